@@ -11,6 +11,7 @@
 #include "base/naming.h"
 #include "base/parallel.h"
 #include "compare/height_map.h"
+#include "compare/visibility.h"
 #include "map/geotiff.h"
 #include "map/pixel_width.h"
 #include "scene/check_mesh.h"
@@ -76,7 +77,8 @@ double checked_distance(const Mesh& mesh, const std::filesystem::path& name) {
 void require_memory(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
                     const map::MapGrid& grid, const MemoryAllowance& memory) {
   const std::uint64_t mesh =
-      std::max(bytes_of_height_map(before, frame, grid), bytes_of_height_map(after, frame, grid));
+      std::max({bytes_of_height_map(before, frame, grid), bytes_of_height_map(after, frame, grid),
+                bytes_of_visibility(before), bytes_of_visibility(after)});
   memory.require(
       map::kCacheBytes + mesh + kBytesPerPixel * static_cast<std::uint64_t>(grid.pixels()),
       fmt::format("a map of {} x {} pixels", grid.columns, grid.rows));
@@ -129,6 +131,40 @@ void fill_heights(const Mesh& before, const Mesh& after, const map::MapFrame& af
   };
   result.before = height_map(before, result.frame, result.grid, result.base, 1, half(0));
   result.difference = height_map(after, after_frame, result.grid, result.base, 1, half(1));
+}
+
+// 255 at the pixels that a survey with known photographs did not see; empty if there is none.
+// `difference` has the heights of the later survey.
+cv::Mat1b find_unseen(const Mesh& before, const Mesh& after, const map::MapFrame& after_frame,
+                      const SurveyPhotos& photos, const ProgressSink& progress,
+                      const Comparison& result) {
+  constexpr double kSlack = 2;  // [px]
+  cv::Mat1b unseen;
+  if (photos.before.empty() && photos.after.empty()) return unseen;
+  unseen = cv::Mat1b(result.before.size(), std::uint8_t{0});
+  const double slack = kSlack * result.grid.pixel;
+  if (!photos.before.empty())
+    mark_unseen({before, result.frame, photos.before}, result.grid, result.base, result.before,
+                result.difference, photos.least, slack, progress, unseen);
+  if (!photos.after.empty())
+    mark_unseen({after, after_frame, photos.after}, result.grid, result.base, result.difference,
+                result.before, photos.least, slack, progress, unseen);
+  return unseen;
+}
+
+// Estimates the noise, or takes the given one.
+Noise noise_of(const cv::Mat1f& difference, const cv::Mat1b& unseen, const cv::Mat1f& steepness,
+               const CompareOptions& options, double pixel) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  cv::Mat1f seen = difference;
+  if (!unseen.empty()) {
+    seen = difference.clone();
+    seen.setTo(kNone, unseen);
+  }
+  if (options.sigmas)
+    return given_noise(seen, steepness, std::hypot(options.sigmas->before, options.sigmas->after));
+  const double least = 1e-3 * pixel;  // of float rounding, for surveys without noise
+  return estimate_noise(seen, steepness, least);
 }
 
 void fill_sigma(const Maps& maps, Comparison& comparison) {
@@ -199,19 +235,21 @@ Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::Map
     require_memory(before, after, after_frame, result.grid, options.memory);
   }
   fill_heights(before, after, after_frame, sink("Heights"), result);
+  const cv::Mat1b unseen =
+      find_unseen(before, after, after_frame, options.photos, sink("Sights"), result);
   Maps maps = subtract(result);
   if (std::ranges::all_of(result.difference, [](float value) { return std::isnan(value); }))
     fail("{}: the surveys do not overlap", options.name_after.string());
-  const double least = 1e-3 * pixel;  // of float rounding, for surveys without noise
-  result.noise = options.sigmas
-                     ? given_noise(result.difference, maps.steepness,
-                                   std::hypot(options.sigmas->before, options.sigmas->after))
-                     : estimate_noise(result.difference, maps.steepness, least);
+  result.noise = noise_of(result.difference, unseen, maps.steepness, options, pixel);
   fill_sigma(maps, result);
   maps = {};
-  result.changes =
-      find_changes(result.difference, result.sigma,
-                   {result.grid, result.registration, result.noise.correlation}, options.changes);
+  result.changes = find_changes(
+      result.difference, result.sigma,
+      {result.grid, result.registration, result.noise.correlation, unseen}, options.changes);
+  cv::Mat1b left_out;
+  cv::compare(result.changes.classes, kNotCompared, left_out, cv::CMP_EQ);
+  for (cv::Mat1f* map : {&result.difference, &result.sigma})
+    map->setTo(std::numeric_limits<float>::quiet_NaN(), left_out);
   return result;
 }
 

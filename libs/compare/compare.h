@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <vector>
 
 #include "base/memory.h"
 #include "base/setting_names.h"
@@ -12,10 +13,17 @@
 #include "compare/noise.h"
 #include "compare/registration.h"
 #include "map/frame.h"
+#include "map/pixel_width.h"
 #include "map/write_maps.h"
 #include "scene/mesh.h"
 
 namespace axial::compare {
+
+// The photographs of the surveys, with poses in the frame of the meshes. Empty: not known.
+struct SurveyPhotos {
+  std::vector<map::Photo> before, after;
+  int least = 3;  // number of photographs that must see a place of a survey
+};
 
 struct CompareOptions {
   double pixel = 0;    // width of a pixel of the map [m]; 0: vertex_distance() of the coarser mesh
@@ -27,13 +35,15 @@ struct CompareOptions {
   };
   std::optional<Sigmas> sigmas = {};
   ChangeOptions changes = {};
+  SurveyPhotos photos = {};
   // The memory that may be used. The need is checked before the maps are made.
   MemoryAllowance memory = {};
   SettingNames name_of = own_name;  // for the field `pixel`, "ground_sample_distance"
   // The names of the surveys in errors.
   std::filesystem::path name_before = "the earlier survey", name_after = "the later survey";
-  // Returns the ProgressSink for a stage with the given name. The stages "Registration" (steps) and
-  // "Heights" (blocks of the map, of both surveys) report their progress.
+  // Returns the ProgressSink for a stage with the given name. The stages "Registration"
+  // (steps), "Heights" (blocks of the map, of both surveys) and "Sights" (rows of the map, of a
+  // survey with photographs) report their progress.
   map::StageProgress progress = {};
 };
 
@@ -60,6 +70,11 @@ double vertex_distance(const Mesh& mesh);
 Eigen::Vector3d upward_direction(const Mesh& mesh);
 
 // Compares two surveys. `frame`: of both meshes.
+//
+// If the photographs of a survey are known, places that too few of them see (mark_unseen() in
+// compare/visibility.h) are compared only within regions of change most of which are seen: meshes
+// go on for a little where few photographs look, and a place above the surface of one survey may be
+// one that this survey did not look at.
 //
 // The variance of a difference is the sum of three parts. The first one is the variance of the
 // noise (Noise), times the squared steepness of the steeper surface. The second one is the square
