@@ -49,7 +49,8 @@ class Search {
       }
     for (std::uint8_t& mark : changes_.classes)
       if (mark == kRefused) mark = kUnchanged;
-    for (const Pixel& seed : seeds) measure(seed);
+    for (const Pixel& seed : seeds)
+      if ((mark(seed) & kCounted) == 0) measure(seed);  // unseen pixels may join two regions
     finish();
     return std::move(changes_);
   }
@@ -115,10 +116,10 @@ class Search {
   }
 
   // Adds the unseen pixels that are connected to the region in reached_, unless there are more of
-  // them than pixels of the region.
+  // them than a quarter of the region.
   void add_unseen(std::uint8_t kind) {
-    const std::size_t seen = reached_.size();
-    for (std::size_t i = 0; i < reached_.size() && reached_.size() <= 2 * seen; ++i) {
+    const std::size_t seen = reached_.size(), most = seen + seen / 4;
+    for (std::size_t i = 0; i < reached_.size() && reached_.size() <= most; ++i) {
       const Pixel inner = reached_[i];
       for_neighbours(inner, [&](const Pixel& p) {
         if (mark(p) != kUnseen || came(p) != (kind == kCame) || !is_larger(p, options_.weak))
@@ -127,7 +128,7 @@ class Search {
         reached_.push_back(p);
       });
     }
-    if (reached_.size() <= 2 * seen) return;
+    if (reached_.size() <= most) return;
     for (std::size_t i = seen; i < reached_.size(); ++i) mark(reached_[i]) = kUnseen;
   }
 

@@ -7,7 +7,8 @@
 // --changed. The maps CHANGE.difference.tif and CHANGE.significant.tif were made by CompareSurveys
 // with --up 0,0,1 and true poses. A pixel has changed if one of 3 x 3 vertical rays meets the
 // highest surfaces of both surveys at heights that differ by more than 0.1 mm. Prints:
-//   - the volumes under the map between both true surfaces [m^3]: came, gone;
+//   - the volumes between both true surfaces at the pixels that are compared [m^3]: came, gone; and
+//     at the other pixels of the map;
 //   - the areas [m^2]: compared; of them changed; of these not found; falsely found; of the latter
 //     farther than two pixels from all change;
 //   - the robust standard deviation of the differences where nothing changed [mm].
@@ -42,17 +43,18 @@ simulate::TriangleMesh survey(const std::string& seed, bool changed) {
 }
 
 struct Truth {
-  cv::Mat1b changed;  // 255: changed
-  double came = 0, gone = 0;
+  cv::Mat1b changed;     // 255: changed
+  cv::Mat1d came, gone;  // volume of each pixel [m^3]
 };
 
 Truth true_change(const std::string& seed, const map::MapGrid& grid) {
   const simulate::RayScene before(survey(seed, false)), after(survey(seed, true));
   constexpr double kAbove = 100, kLeast = 1e-4;  // [m]
   constexpr int kSide = 3;
-  Truth truth{cv::Mat1b(grid.rows, grid.columns, std::uint8_t{0})};
-  std::vector<double> came(static_cast<std::size_t>(grid.rows)), gone(came.size());
-  parallel_for(came.size(), [&](std::size_t row) {
+  const double area = grid.pixel * grid.pixel / (kSide * kSide);
+  Truth truth{cv::Mat1b(grid.rows, grid.columns, std::uint8_t{0}),
+              cv::Mat1d(grid.rows, grid.columns, 0.0), cv::Mat1d(grid.rows, grid.columns, 0.0)};
+  parallel_for(static_cast<std::size_t>(grid.rows), [&](std::size_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < grid.columns; ++x)
       for (int i = 0; i < kSide * kSide; ++i) {
@@ -63,15 +65,25 @@ Truth true_change(const std::string& seed, const map::MapGrid& grid) {
         if (!high || !low) fail("the map is larger than the scene");
         const double rise = high->distance - low->distance;
         if (std::abs(rise) > kLeast) truth.changed(y, x) = 255;
-        (rise > 0 ? came : gone)[row] += std::abs(rise);
+        (rise > 0 ? truth.came : truth.gone)(y, x) += area * std::abs(rise);
       }
   });
-  const double area = grid.pixel * grid.pixel / (kSide * kSide);
-  for (std::size_t row = 0; row < came.size(); ++row) {
-    truth.came += area * came[row];
-    truth.gone += area * gone[row];
-  }
   return truth;
+}
+
+void print_volumes(const cv::Mat1b& classes, const Truth& truth) {
+  cv::Mat1b others;
+  cv::compare(classes, compare::kNotCompared, others, cv::CMP_EQ);
+  cv::Mat1b compared;
+  cv::bitwise_not(others, compared);
+  const auto sum = [](const cv::Mat1d& volumes, const cv::Mat1b& mask) {
+    cv::Mat1d part(volumes.size(), 0.0);
+    volumes.copyTo(part, mask);
+    return cv::sum(part)[0];
+  };
+  std::cout << fmt::format("volumes: came {:.6f} gone {:.6f} others: came {:.6f} gone {:.6f}\n",
+                           sum(truth.came, compared), sum(truth.gone, compared),
+                           sum(truth.came, others), sum(truth.gone, others));
 }
 
 void print_areas(const cv::Mat1b& classes, const Truth& truth, double pixel_area) {
@@ -134,7 +146,7 @@ int run(int argc, char** argv) {
   const cv::Mat1b classes = map::read_map(change + ".significant.tif").pixels;
   const map::MapGrid& grid = difference.grid;
   const Truth truth = true_change(argv[1], grid);
-  std::cout << fmt::format("volumes: came {:.6f} gone {:.6f}\n", truth.came, truth.gone);
+  print_volumes(classes, truth);
   print_areas(classes, truth, grid.pixel * grid.pixel);
   print_noise(difference.pixels, classes, truth);
   if (argc > 3) write_picture(argv[3], difference.pixels, classes, truth);
