@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/height_map.h"
+
 namespace axial::compare {
 namespace {
 
@@ -116,13 +118,19 @@ class Search {
   }
 
   // Adds the unseen pixels that are connected to the region in reached_, unless there are more of
-  // them than a quarter of the region.
+  // them than a quarter of the region. Differences larger than twice the median of the region do
+  // not belong to it.
   void add_unseen(std::uint8_t kind) {
+    if (facts_.unseen.empty()) return;
     const std::size_t seen = reached_.size(), most = seen + seen / 4;
+    std::vector<double> differences;
+    for (const Pixel& p : reached_) differences.push_back(std::abs(difference(p)));
+    const double limit = 2 * median_of(differences);
     for (std::size_t i = 0; i < reached_.size() && reached_.size() <= most; ++i) {
       const Pixel inner = reached_[i];
       for_neighbours(inner, [&](const Pixel& p) {
-        if (mark(p) != kUnseen || came(p) != (kind == kCame) || !is_larger(p, options_.weak))
+        if (mark(p) != kUnseen || came(p) != (kind == kCame) || !is_larger(p, options_.weak) ||
+            std::abs(difference(p)) > limit)
           return;
         mark(p) = kind;
         reached_.push_back(p);
