@@ -19,9 +19,9 @@
 namespace axial::compare {
 namespace {
 
-// The most at the same time: height, difference, standard deviation and class, and a list of the
-// pixels of one region, which grows by doubling.
-constexpr std::uint64_t kBytesPerPixel = 4 + 4 + 4 + 1 + 24;
+// The most at the same time: height, difference, standard deviation, class and whether it is seen,
+// and a list of the pixels of one region, which grows by doubling.
+constexpr std::uint64_t kBytesPerPixel = 4 + 4 + 4 + 1 + 1 + 24;
 
 // For each face of the earlier survey, the copy and the hierarchy of evaluate::Surface.
 constexpr std::uint64_t kRegistrationBytes = 160;
@@ -75,11 +75,12 @@ double checked_distance(const Mesh& mesh, const std::filesystem::path& name) {
 }
 
 void require_memory(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
-                    const map::MapGrid& grid, const MemoryAllowance& memory) {
-  const std::uint64_t mesh =
-      std::max({bytes_of_height_map(before, frame, grid), bytes_of_height_map(after, frame, grid),
-                bytes_of_visibility(before), bytes_of_visibility(after)});
-  memory.require(
+                    const map::MapGrid& grid, const CompareOptions& options) {
+  std::uint64_t mesh =
+      std::max(bytes_of_height_map(before, frame, grid), bytes_of_height_map(after, frame, grid));
+  if (!options.photos.before.empty()) mesh = std::max(mesh, bytes_of_visibility(before));
+  if (!options.photos.after.empty()) mesh = std::max(mesh, bytes_of_visibility(after));
+  options.memory.require(
       map::kCacheBytes + mesh + kBytesPerPixel * static_cast<std::uint64_t>(grid.pixels()),
       fmt::format("a map of {} x {} pixels", grid.columns, grid.rows));
 }
@@ -186,6 +187,45 @@ void fill_sigma(const Maps& maps, Comparison& comparison) {
   comparison.registration_sigma = median_of(parts);
 }
 
+ProgressSink sink_of(const CompareOptions& options, const char* stage) {
+  return options.progress ? options.progress(stage) : ProgressSink{};
+}
+
+// A comparison with the frame, the grid and the registration. `after_frame` becomes the frame of
+// the later survey on the map.
+Comparison placed(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
+                  const CompareOptions& options, map::MapFrame& after_frame) {
+  const double distance_before = checked_distance(before, options.name_before),
+               distance_after = checked_distance(after, options.name_after);
+  const double pixel = options.pixel > 0
+                           ? options.pixel
+                           : map::rounded_width(std::max(distance_before, distance_after));
+  Comparison result;
+  result.frame = frame;
+  result.base = frame.origin.z();
+  const map::MapGrid of_before = naming(
+      options.name_before, [&] { return map::grid_around(before, frame, pixel, options.name_of); });
+  const auto common = [&](const map::MapFrame& of_after) {
+    return naming(options.name_after, [&] {
+      return common_grid(of_before, map::grid_around(after, of_after, pixel, options.name_of));
+    });
+  };
+  result.grid = common(frame);
+  require_memory(before, after, frame, result.grid, options);
+  after_frame = frame;
+  if (options.align) {
+    options.memory.require(kRegistrationBytes * before.faces.size(), "the registration");
+    result.registration = naming(options.name_after, [&] {
+      return register_surveys(before, after, frame, result.grid, options.registration,
+                              sink_of(options, "Registration"));
+    });
+    after_frame = moved(frame, result.registration.motion);
+    result.grid = common(after_frame);
+    require_memory(before, after, after_frame, result.grid, options);
+  }
+  return result;
+}
+
 }  // namespace
 
 double vertex_distance(const Mesh& mesh) {
@@ -203,44 +243,15 @@ Eigen::Vector3d upward_direction(const Mesh& mesh) {
 
 Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
                            const CompareOptions& options) {
-  const double distance_before = checked_distance(before, options.name_before),
-               distance_after = checked_distance(after, options.name_after);
-  const double pixel = options.pixel > 0
-                           ? options.pixel
-                           : map::rounded_width(std::max(distance_before, distance_after));
-  const auto sink = [&](const char* stage) {
-    return options.progress ? options.progress(stage) : ProgressSink{};
-  };
-  Comparison result;
-  result.frame = frame;
-  result.base = frame.origin.z();
-  const map::MapGrid of_before = naming(
-      options.name_before, [&] { return map::grid_around(before, frame, pixel, options.name_of); });
-  const auto common = [&](const map::MapFrame& after_frame) {
-    return naming(options.name_after, [&] {
-      return common_grid(of_before, map::grid_around(after, after_frame, pixel, options.name_of));
-    });
-  };
-  result.grid = common(frame);
-  require_memory(before, after, frame, result.grid, options.memory);
-  map::MapFrame after_frame = frame;
-  if (options.align) {
-    options.memory.require(kRegistrationBytes * before.faces.size(), "the registration");
-    result.registration = naming(options.name_after, [&] {
-      return register_surveys(before, after, frame, result.grid, options.registration,
-                              sink("Registration"));
-    });
-    after_frame = moved(frame, result.registration.motion);
-    result.grid = common(after_frame);
-    require_memory(before, after, after_frame, result.grid, options.memory);
-  }
-  fill_heights(before, after, after_frame, sink("Heights"), result);
+  map::MapFrame after_frame;
+  Comparison result = placed(before, after, frame, options, after_frame);
+  fill_heights(before, after, after_frame, sink_of(options, "Heights"), result);
   const cv::Mat1b unseen =
-      find_unseen(before, after, after_frame, options.photos, sink("Sights"), result);
+      find_unseen(before, after, after_frame, options.photos, sink_of(options, "Sights"), result);
   Maps maps = subtract(result);
   if (std::ranges::all_of(result.difference, [](float value) { return std::isnan(value); }))
     fail("{}: the surveys do not overlap", options.name_after.string());
-  result.noise = noise_of(result.difference, unseen, maps.steepness, options, pixel);
+  result.noise = noise_of(result.difference, unseen, maps.steepness, options, result.grid.pixel);
   fill_sigma(maps, result);
   maps = {};
   result.changes = find_changes(

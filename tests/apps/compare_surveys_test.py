@@ -201,6 +201,10 @@ class WrongInput(CompareTest):
                 ("--sigma-before 0: must be from", "--sigma-before", "0", "--sigma-after", "0.01"),
                 ("--sigma-after nan", "--sigma-before", "0.01", "--sigma-after", "nan"),
                 ("--min-pixels 0: must be from 1", "--min-pixels", "0"),
+                ("--min-views 0: must be from 1", "--min-views", "0", "--scene", "none.mvs"),
+                ("--min-views needs --scene", "--min-views", "2"),
+                ("none.mvs", "--scene", "none.mvs"),
+                ("none.mvs", "--other-scene", "none.mvs"),
                 ("--max-memory", "--max-memory", "20"),
                 ("--output-file .: must be the name of a file", "-o", ".")):
             self.refuses_and_keeps(expected, *self.compare(*arguments))
