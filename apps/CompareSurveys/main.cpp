@@ -11,9 +11,14 @@
 #include "base/log.h"
 #include "base/naming.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "base/same_file.h"
 #include "compare/write_changes.h"
+#include "io/cameras/geo_offset.h"
+#include "io/cameras/lenses.h"
+#include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
+#include "io/openmvs/scene_with_cameras.h"
 #include "io/ply/ply.h"
 #include "io/textured/textured_mesh.h"
 #include "scene/check_mesh.h"
@@ -44,8 +49,7 @@ bool is_ply(const fs::path& path) {
 
 Mesh read_survey(const Settings& settings, const fs::path& path, const LocalFrame& frame) {
   memory_of(settings).require(io::bytes_to_read_mesh(path), "reading " + path.string());
-  Mesh mesh = is_ply(path) ? io::read_mesh_ply(path, frame)
-                           : std::move(io::read_textured_mesh(path, frame).mesh);
+  Mesh mesh = io::read_shape(path, frame);
   mesh.colors = {};
   naming(path, [&] { check_mesh(mesh); });
   log_info("{}: {} vertices, {} faces", path.string(), mesh.vertices.size(), mesh.faces.size());
@@ -53,18 +57,44 @@ Mesh read_survey(const Settings& settings, const fs::path& path, const LocalFram
   return mesh;
 }
 
+// The photographs of a survey, in the frame of the meshes. None without a scene.
+std::vector<map::Photo> read_photos(const Settings& settings, const fs::path& path,
+                                    const LocalFrame& frame) {
+  std::vector<map::Photo> photos;
+  if (path.empty()) return photos;
+  if (const auto counts = io::count_mvs(path))
+    memory_of(settings).require(counts->reading_bytes(), "reading " + path.string());
+  io::SceneFiles files;
+  files.scene = path;
+  files.working_folder = settings.working_folder;
+  const io::SceneWithCameras scene = io::read_scene_with_cameras(files);
+  const Eigen::Vector3d shift = scene.frame.origin - frame.origin;
+  for (const SceneImage& image : scene.scene.images) {
+    if (!image.calibrated) continue;
+    photos.push_back({image.camera, image.pose});
+    photos.back().pose.centre += shift;
+  }
+  if (photos.empty()) fail("{}: has no calibrated image", path.string());
+  return photos;
+}
+
 // A frame near the mesh of the earlier survey.
 LocalFrame frame_of_survey(const fs::path& path) {
   if (is_ply(path)) return frame_near(io::ply_place(path).first_vertex);
   // Far from the origin these positions are coarse, but exact enough to choose a frame.
-  const Mesh coarse = io::read_textured_mesh(path, LocalFrame{}).mesh;
+  const Mesh coarse = io::read_shape(path, LocalFrame{});
   if (coarse.vertices.empty()) return {};
   return frame_near(coarse.vertices.front().cast<double>());
 }
 
 void keep_inputs(const Settings& settings) {
   const std::vector<fs::path> outputs = change_files(settings).all();
-  require_no_inputs(outputs, std::vector{settings.before, settings.after}, "--output-file");
+  std::vector<fs::path> inputs{settings.before, settings.after};
+  for (const fs::path& scene : {settings.scene_before, settings.scene_after}) {
+    if (scene.empty()) continue;
+    inputs.insert(inputs.end(), {scene, io::lenses_beside(scene), io::geo_offset_beside(scene)});
+  }
+  require_no_inputs(outputs, inputs, "--output-file");
   std::error_code ignored;
   fs::create_directories(settings.output.parent_path(), ignored);
   for (const fs::path& file : outputs) require_writable(file);
@@ -105,6 +135,21 @@ void report_registration(const compare::Comparison& comparison) {
   if (!r.converged) log_warning("--align icp: did not converge after {} steps", r.iterations);
 }
 
+// If most of the map changed, what changed looks like noise.
+void warn_of_large_changes(const compare::Comparison& comparison) {
+  constexpr double kMuch = 5;
+  const compare::Changes& changes = comparison.changes;
+  const compare::Noise& noise = comparison.noise;
+  if (changes.came.area + changes.gone.area > 0.5 * changes.area_compared)
+    log_warning("more than half of the map changed: are both surveys in one frame?");
+  if (!noise.is_given && noise.typical > kMuch * noise.local && noise.local > 0)
+    log_warning(
+        "the noise of {:.3f} mm is {:.1f} times that between neighbouring pixels: if more than "
+        "half of the map changed, changes count as noise; --sigma-before and --sigma-after state "
+        "the noise",
+        noise.typical * 1e3, noise.typical / noise.local);
+}
+
 void report(const compare::Comparison& comparison) {
   const compare::Changes& changes = comparison.changes;
   log_info("map of {} x {} pixels of {:.4g} m, {:.4g} m^2 compared", comparison.grid.columns,
@@ -118,6 +163,7 @@ void report(const compare::Comparison& comparison) {
   };
   line("came", changes.came);
   line("gone", changes.gone);
+  warn_of_large_changes(comparison);
 }
 
 int run(int argc, char** argv) {
@@ -133,14 +179,19 @@ int run(int argc, char** argv) {
   facts.mesh_frame = frame;
   const Mesh before = read_survey(settings, settings.before, frame);
   const Mesh after = read_survey(settings, settings.after, frame);
+  settings.compare.photos.before = read_photos(settings, settings.scene_before, frame);
+  settings.compare.photos.after = read_photos(settings, settings.scene_after, frame);
+  return_freed_memory();
   facts.aligned = settings.compare.align;
   settings.compare.memory = memory_of(settings);
   const map::MapFrame map_frame = place_map(settings, before, frame);
   facts.is_georeferenced = has_system(settings, frame) && map_frame.axes.isIdentity(0);
   keep_inputs(settings);
-  const compare::Comparison comparison = naming(settings.after, [&] {
-    return compare::compare_surveys(before, after, map_frame, settings.compare);
-  });
+  settings.compare.name_before = settings.before;
+  settings.compare.name_after = settings.after;
+  settings.compare.progress = console_progress;
+  const compare::Comparison comparison =
+      compare::compare_surveys(before, after, map_frame, settings.compare);
   if (settings.compare.align) report_registration(comparison);
   report(comparison);
   const compare::ChangeFiles files = change_files(settings);

@@ -12,7 +12,7 @@ namespace {
 
 // The values of the command line before they are checked and converted.
 struct Raw {
-  std::string input, other, output, up, align = "none";
+  std::string input, other, scene, other_scene, output, up, align = "none";
   double sigma_before = 0, sigma_after = 0;
 };
 
@@ -22,6 +22,10 @@ constexpr SettingName kOptions[] = {
 void declare_io(OptionList& list, Raw& raw, Settings& settings) {
   list.add("input-file,i", &raw.input, "mesh of the earlier survey (PLY, OBJ or GLB)")
       .add("other", &raw.other, "mesh of the later survey (PLY, OBJ or GLB)")
+      .add("scene", &raw.scene,
+           "scene of the earlier survey: places that fewer than --min-views of its photographs see "
+           "are not compared")
+      .add("other-scene", &raw.other_scene, "the same for the later survey")
       .add("output-file,o", &raw.output, "begin of the names of the outputs (<input>_change)")
       .add_with_default("max-memory", &settings.max_memory,
                         "largest memory to use [MB] (0: 70 % of the free memory)");
@@ -53,7 +57,10 @@ void declare_comparison(OptionList& list, Raw& raw, Settings& settings) {
       .add("sigma-after", &raw.sigma_after, "standard deviation of the later surface [m]")
       .add_with_default("min-pixels", &changes.least_pixels,
                         "smallest number of pixels with a significant difference in a region of "
-                        "change");
+                        "change")
+      .add_with_default("min-views", &settings.compare.photos.least,
+                        "smallest number of photographs that see a place, with --scene or "
+                        "--other-scene");
 }
 
 template <class T>
@@ -66,6 +73,9 @@ void check_values(const ParsedOptions& parsed, const Raw& raw, const Settings& s
   check_range("ground-sample-distance", settings.compare.pixel, 0.0, 1e6);
   check_range("epsg", settings.epsg, 0, 1 << 20);
   check_range("min-pixels", settings.compare.changes.least_pixels, 1, 1'000'000);
+  check_range("min-views", settings.compare.photos.least, 1, 1000);
+  if (given(parsed, "min-views") && raw.scene.empty() && raw.other_scene.empty())
+    fail("--min-views needs --scene or --other-scene");
   check_range("max-memory", settings.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
   if (raw.align != "none" && raw.align != "icp") fail("--align {}: must be none or icp", raw.align);
   if (raw.other.empty()) fail("--other is missing: the mesh of the later survey");
@@ -83,6 +93,9 @@ void convert(const Raw& raw, Options& options) {
   const CommonOptions& common = options.parsed.common;
   settings.before = in_working_folder(common, raw.input);
   settings.after = in_working_folder(common, raw.other);
+  settings.scene_before = in_working_folder(common, raw.scene);
+  settings.scene_after = in_working_folder(common, raw.other_scene);
+  settings.working_folder = in_working_folder(common, ".");
   settings.output =
       raw.output.empty()
           ? settings.before.parent_path() / (settings.before.stem().string() + "_change")

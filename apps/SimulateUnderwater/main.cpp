@@ -12,6 +12,11 @@
 namespace axial::apps {
 namespace {
 
+// A second survey has other noise than the first one.
+std::uint32_t noise_seed(const simulate::PresetOptions& preset) {
+  return preset.changed ? ~preset.seed : preset.seed;
+}
+
 // Renders the images and truth of all views in one medium, as far as the options ask for them.
 void photograph(const Arguments& a, const simulate::Preset& preset, const simulate::RayScene& scene,
                 const simulate::Shader& shader, bool water, const std::filesystem::path& folder) {
@@ -27,7 +32,7 @@ void photograph(const Arguments& a, const simulate::Preset& preset, const simula
       cv::Mat3f radiance =
           simulate::render_radiance(scene, shader, preset.lens, port, view, a.samples);
       simulate::add_haze(radiance, a.haze);
-      const auto key = simulate::noise_key(a.preset.seed, i, water);
+      const auto key = simulate::noise_key(noise_seed(a.preset), i, water);
       io::write_jpeg(folder / (view_name(i) + ".jpg"), simulate::develop(radiance, a.noise, key),
                      a.jpeg_quality);
     }
@@ -44,6 +49,7 @@ void simulate_scene(const Arguments& a, const simulate::Preset& preset,
   const simulate::RayScene scene(mesh);
   const simulate::Shader shader = simulate::seabed_shader(mesh, scene, preset.texture);
   write_mesh(folder / "mesh.ply", mesh);
+  if (preset.moved) write_change(folder / "change.json", preset, simulate::true_change(preset));
   if (!a.truth_only) {
     write_port(folder / "housing.json", preset);
     write_sparse_model(folder / "sparse", preset.lens, preset.views,

@@ -2,9 +2,11 @@
 #include "write_scene.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "io/bytes/json.h"
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
 #include "io/images/image.h"
@@ -87,6 +89,25 @@ void write_sparse_model(const std::filesystem::path& folder, const simulate::Len
 
 void write_port(const std::filesystem::path& file, const simulate::Preset& preset) {
   io::write_housing(file, io::housing_with(port_of(preset)));
+}
+
+void write_change(const std::filesystem::path& file, const simulate::Preset& preset,
+                  const simulate::ChangeTruth& change) {
+  const auto part = [](const simulate::ChangedPart& of) {
+    return nlohmann::json{
+        {"volume", of.volume}, {"area", of.area}, {"x", of.place.x()}, {"y", of.place.y()}};
+  };
+  nlohmann::json json{{"boulder_gone", part(change.gone)},
+                      {"boulder_came", part(change.came)},
+                      {"patch_came", part(change.patch)}};
+  const simulate::Growth& growth = preset.terrain.growth;
+  json["patch_came"]["width"] = 2 * growth.half.x();
+  json["patch_came"]["length"] = 2 * growth.half.y();
+  json["patch_came"]["height"] = preset.terrain.relief * growth.height;
+  json["came"] = change.came.volume + change.patch.volume;
+  json["gone"] = change.gone.volume;
+  json["net"] = change.came.volume + change.patch.volume - change.gone.volume;
+  io::write_json(file, json);
 }
 
 void write_mesh(const std::filesystem::path& file, const simulate::TriangleMesh& mesh) {

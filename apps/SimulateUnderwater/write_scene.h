@@ -8,6 +8,7 @@
 #include "simulate/presets.h"
 #include "simulate/render.h"
 #include "simulate/sparse_points.h"
+#include "simulate/survey_change.h"
 #include "simulate/triangle_mesh.h"
 
 namespace axial::apps {
@@ -25,6 +26,11 @@ void write_sparse_model(const std::filesystem::path& folder, const simulate::Len
 // Writes a housing file with one port, "main", for every image: the preset's port, or the water
 // surface.
 void write_port(const std::filesystem::path& file, const simulate::Preset& preset);
+
+// Writes what changed before a second survey: the volumes and areas of `change`, their sum, and the
+// places of the boulder and of the patch in `preset` [world, m].
+void write_change(const std::filesystem::path& file, const simulate::Preset& preset,
+                  const simulate::ChangeTruth& change);
 
 // Writes a PLY file. If the mesh has thicknesses, they are the vertex property `thickness` [m].
 void write_mesh(const std::filesystem::path& file, const simulate::TriangleMesh& mesh);

@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/height_map.h"
+
 namespace axial::compare {
 namespace {
 
 // Marks of pixels while regions are searched, besides the classes.
 constexpr std::uint8_t kRefused = 3;               // in a region that is too small
+constexpr std::uint8_t kUnseen = 4;                // not seen by a survey, in no region
 constexpr std::uint8_t kCounted = 16, kAtRim = 8;  // in a volume: pixels of regions, others
 
 struct Pixel {
@@ -39,24 +42,32 @@ class Search {
 
   Changes run() {
     std::vector<Pixel> seeds;
+    mark_not_compared();
     for (int y = 0; y < difference_.rows; ++y)
       for (int x = 0; x < difference_.cols; ++x) {
-        if (std::isnan(difference_(y, x)))
-          changes_.classes(y, x) = kNotCompared;
-        else
-          ++compared_;
         if (changes_.classes(y, x) == kUnchanged && is_larger({y, x}, options_.strong) &&
             mark_region({y, x}))
           seeds.push_back({y, x});
       }
     for (std::uint8_t& mark : changes_.classes)
       if (mark == kRefused) mark = kUnchanged;
-    for (const Pixel& seed : seeds) measure(seed);
+    for (const Pixel& seed : seeds)
+      if ((mark(seed) & kCounted) == 0) measure(seed);  // unseen pixels may join two regions
     finish();
     return std::move(changes_);
   }
 
  private:
+  void mark_not_compared() {
+    for (int y = 0; y < difference_.rows; ++y)
+      for (int x = 0; x < difference_.cols; ++x) {
+        if (std::isnan(difference_(y, x)))
+          changes_.classes(y, x) = kNotCompared;
+        else if (!facts_.unseen.empty() && facts_.unseen(y, x) > 0)
+          changes_.classes(y, x) = kUnseen;
+      }
+  }
+
   std::uint8_t& mark(const Pixel& p) { return changes_.classes(p.y, p.x); }
   double difference(const Pixel& p) const { return static_cast<double>(difference_(p.y, p.x)); }
   double sigma(const Pixel& p) const { return static_cast<double>(sigma_(p.y, p.x)); }
@@ -91,17 +102,42 @@ class Search {
     const bool seed_came = came(seed);
     const std::uint8_t kind = seed_came ? kCame : kGone;
     reach(seed, [&](const Pixel& p) {
-      if (mark(p) != kUnchanged || std::isnan(difference(p)) || came(p) != seed_came ||
-          !is_larger(p, options_.weak))
+      if (mark(p) != kUnchanged || came(p) != seed_came || !is_larger(p, options_.weak))
         return false;
       mark(p) = kind;
       return true;
     });
     const auto strong = std::ranges::count_if(
         reached_, [&](const Pixel& p) { return is_larger(p, options_.strong); });
-    if (strong >= options_.least_pixels) return true;
+    if (strong >= options_.least_pixels) {
+      add_unseen(kind);
+      return true;
+    }
     for (const Pixel& p : reached_) mark(p) = kRefused;
     return false;
+  }
+
+  // Adds the unseen pixels that are connected to the region in reached_, unless there are more of
+  // them than a quarter of the region. Differences larger than twice the median of the region do
+  // not belong to it.
+  void add_unseen(std::uint8_t kind) {
+    if (facts_.unseen.empty()) return;
+    const std::size_t seen = reached_.size(), most = seen + seen / 4;
+    std::vector<double> differences;
+    for (const Pixel& p : reached_) differences.push_back(std::abs(difference(p)));
+    const double limit = 2 * median_of(differences);
+    for (std::size_t i = 0; i < reached_.size() && reached_.size() <= most; ++i) {
+      const Pixel inner = reached_[i];
+      for_neighbours(inner, [&](const Pixel& p) {
+        if (mark(p) != kUnseen || came(p) != (kind == kCame) || !is_larger(p, options_.weak) ||
+            std::abs(difference(p)) > limit)
+          return;
+        mark(p) = kind;
+        reached_.push_back(p);
+      });
+    }
+    if (reached_.size() <= most) return;
+    for (std::size_t i = seen; i < reached_.size(); ++i) mark(reached_[i]) = kUnseen;
   }
 
   Eigen::Vector3d place(const Pixel& p) const {
@@ -174,7 +210,8 @@ class Search {
     const double area = facts_.grid.pixel * facts_.grid.pixel;
     for (std::uint8_t& mark : changes_.classes) {
       if (mark == kAtRim) mark = kUnchanged;
-      if (mark != kNotCompared) mark &= static_cast<std::uint8_t>(~kCounted);
+      if (mark == kUnseen) mark = kNotCompared;
+      if (mark != kNotCompared) ++compared_, mark &= static_cast<std::uint8_t>(~kCounted);
     }
     std::ranges::stable_sort(changes_.regions, [](const Region& a, const Region& b) {
       return a.size.volume > b.size.volume;

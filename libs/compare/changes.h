@@ -17,8 +17,11 @@ inline constexpr std::uint8_t kUnchanged = 0, kGone = 1, kCame = 2, kNotCompared
 struct ChangeOptions {
   // A region of change consists of adjacent pixels whose differences have the same sign and are
   // larger than `weak` standard deviations. At least `least_pixels` of them are larger than
-  // `strong` standard deviations. Pixels that touch at a corner are adjacent.
-  double strong = 3, weak = 1;
+  // `strong` standard deviations. Pixels that touch at a corner are adjacent. These
+  // are pixels that both surveys see. Then the unseen pixels are added that continue the region, if
+  // they are no more than a quarter of its seen pixels, and
+  // whose differences are at most twice the median of these. Other unseen pixels are not compared.
+  double strong = 3, weak = 1.5;
   int least_pixels = 8;
   // The volume of a region includes the differences, of either sign, of the pixels around it that
   // are in no region, up to this distance [px]: noise decides which pixels at the rim are larger
@@ -52,6 +55,7 @@ struct VolumeFacts {
   map::MapGrid grid;
   const Registration& registration;  // its uncertainty is common to all pixels
   double correlation = 1;            // Noise::correlation
+  cv::Mat1b unseen = {};             // above 0: a survey did not see the pixel; empty: all are seen
 };
 
 // Finds the changes. `difference`: later minus earlier height [m], NaN: not compared. `sigma`: its

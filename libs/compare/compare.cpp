@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/naming.h"
 #include "base/parallel.h"
 #include "compare/height_map.h"
+#include "compare/visibility.h"
 #include "map/geotiff.h"
 #include "map/pixel_width.h"
 #include "scene/check_mesh.h"
@@ -17,9 +19,9 @@
 namespace axial::compare {
 namespace {
 
-// The most at the same time: height, difference, standard deviation and class, and a list of the
-// pixels of one region, which grows by doubling.
-constexpr std::uint64_t kBytesPerPixel = 4 + 4 + 4 + 1 + 24;
+// The most at the same time: height, difference, standard deviation, class and whether it is seen,
+// and a list of the pixels of one region, which grows by doubling.
+constexpr std::uint64_t kBytesPerPixel = 4 + 4 + 4 + 1 + 1 + 24;
 
 // For each face of the earlier survey, the copy and the hierarchy of evaluate::Surface.
 constexpr std::uint64_t kRegistrationBytes = 160;
@@ -64,11 +66,21 @@ map::MapGrid common_grid(const map::MapGrid& a, const map::MapGrid& b) {
   return {left, top, pixel, static_cast<int>(columns), static_cast<int>(rows)};
 }
 
+// vertex_distance() of a mesh that is one. Errors name the survey.
+double checked_distance(const Mesh& mesh, const std::filesystem::path& name) {
+  return naming(name, [&] {
+    check_mesh(mesh);
+    return vertex_distance(mesh);
+  });
+}
+
 void require_memory(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
-                    const map::MapGrid& grid, const MemoryAllowance& memory) {
-  const std::uint64_t mesh =
+                    const map::MapGrid& grid, const CompareOptions& options) {
+  std::uint64_t mesh =
       std::max(bytes_of_height_map(before, frame, grid), bytes_of_height_map(after, frame, grid));
-  memory.require(
+  if (!options.photos.before.empty()) mesh = std::max(mesh, bytes_of_visibility(before));
+  if (!options.photos.after.empty()) mesh = std::max(mesh, bytes_of_visibility(after));
+  options.memory.require(
       map::kCacheBytes + mesh + kBytesPerPixel * static_cast<std::uint64_t>(grid.pixels()),
       fmt::format("a map of {} x {} pixels", grid.columns, grid.rows));
 }
@@ -110,6 +122,52 @@ Maps subtract(Comparison& comparison) {
   return maps;
 }
 
+// Fills `before`, and `difference` with the heights of the later survey.
+void fill_heights(const Mesh& before, const Mesh& after, const map::MapFrame& after_frame,
+                  const ProgressSink& progress, Comparison& result) {
+  const auto half = [&](std::size_t first) {
+    return [&progress, first](std::size_t done, std::size_t blocks) {
+      if (progress) progress(first * blocks + done, 2 * blocks);
+    };
+  };
+  result.before = height_map(before, result.frame, result.grid, result.base, 1, half(0));
+  result.difference = height_map(after, after_frame, result.grid, result.base, 1, half(1));
+}
+
+// 255 at the pixels that a survey with known photographs did not see; empty if there is none.
+// `difference` has the heights of the later survey.
+cv::Mat1b find_unseen(const Mesh& before, const Mesh& after, const map::MapFrame& after_frame,
+                      const SurveyPhotos& photos, const ProgressSink& progress,
+                      const Comparison& result) {
+  constexpr double kSlack = 2;  // [px]
+  cv::Mat1b unseen;
+  if (photos.before.empty() && photos.after.empty()) return unseen;
+  unseen = cv::Mat1b(result.before.size(), std::uint8_t{0});
+  const double slack = kSlack * result.grid.pixel;
+  if (!photos.before.empty())
+    mark_unseen({before, result.frame, photos.before}, result.grid, result.base, result.before,
+                result.difference, photos.least, slack, progress, unseen);
+  if (!photos.after.empty())
+    mark_unseen({after, after_frame, photos.after}, result.grid, result.base, result.difference,
+                result.before, photos.least, slack, progress, unseen);
+  return unseen;
+}
+
+// Estimates the noise, or takes the given one.
+Noise noise_of(const cv::Mat1f& difference, const cv::Mat1b& unseen, const cv::Mat1f& steepness,
+               const CompareOptions& options, double pixel) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  cv::Mat1f seen = difference;
+  if (!unseen.empty()) {
+    seen = difference.clone();
+    seen.setTo(kNone, unseen);
+  }
+  if (options.sigmas)
+    return given_noise(seen, steepness, std::hypot(options.sigmas->before, options.sigmas->after));
+  const double least = 1e-3 * pixel;  // of float rounding, for surveys without noise
+  return estimate_noise(seen, steepness, least);
+}
+
 void fill_sigma(const Maps& maps, Comparison& comparison) {
   comparison.sigma = cv::Mat1f(comparison.difference.size(), 0.f);
   for (int y = 0; y < comparison.sigma.rows; ++y)
@@ -129,6 +187,45 @@ void fill_sigma(const Maps& maps, Comparison& comparison) {
   comparison.registration_sigma = median_of(parts);
 }
 
+ProgressSink sink_of(const CompareOptions& options, const char* stage) {
+  return options.progress ? options.progress(stage) : ProgressSink{};
+}
+
+// A comparison with the frame, the grid and the registration. `after_frame` becomes the frame of
+// the later survey on the map.
+Comparison placed(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
+                  const CompareOptions& options, map::MapFrame& after_frame) {
+  const double distance_before = checked_distance(before, options.name_before),
+               distance_after = checked_distance(after, options.name_after);
+  const double pixel = options.pixel > 0
+                           ? options.pixel
+                           : map::rounded_width(std::max(distance_before, distance_after));
+  Comparison result;
+  result.frame = frame;
+  result.base = frame.origin.z();
+  const map::MapGrid of_before = naming(
+      options.name_before, [&] { return map::grid_around(before, frame, pixel, options.name_of); });
+  const auto common = [&](const map::MapFrame& of_after) {
+    return naming(options.name_after, [&] {
+      return common_grid(of_before, map::grid_around(after, of_after, pixel, options.name_of));
+    });
+  };
+  result.grid = common(frame);
+  require_memory(before, after, frame, result.grid, options);
+  after_frame = frame;
+  if (options.align) {
+    options.memory.require(kRegistrationBytes * before.faces.size(), "the registration");
+    result.registration = naming(options.name_after, [&] {
+      return register_surveys(before, after, frame, result.grid, options.registration,
+                              sink_of(options, "Registration"));
+    });
+    after_frame = moved(frame, result.registration.motion);
+    result.grid = common(after_frame);
+    require_memory(before, after, after_frame, result.grid, options);
+  }
+  return result;
+}
+
 }  // namespace
 
 double vertex_distance(const Mesh& mesh) {
@@ -146,44 +243,24 @@ Eigen::Vector3d upward_direction(const Mesh& mesh) {
 
 Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
                            const CompareOptions& options) {
-  check_mesh(before);
-  check_mesh(after);
-  const double pixel =
-      options.pixel > 0
-          ? options.pixel
-          : map::rounded_width(std::max(vertex_distance(before), vertex_distance(after)));
-  Comparison result;
-  result.frame = frame;
-  result.base = frame.origin.z();
-  const map::MapGrid of_before = map::grid_around(before, frame, pixel, options.name_of);
-  const auto common = [&](const map::MapFrame& after_frame) {
-    return common_grid(of_before, map::grid_around(after, after_frame, pixel, options.name_of));
-  };
-  result.grid = common(frame);
-  require_memory(before, after, frame, result.grid, options.memory);
-  map::MapFrame after_frame = frame;
-  if (options.align) {
-    options.memory.require(kRegistrationBytes * before.faces.size(), "the registration");
-    result.registration = register_surveys(before, after, frame, result.grid, options.registration);
-    after_frame = moved(frame, result.registration.motion);
-    result.grid = common(after_frame);
-    require_memory(before, after, after_frame, result.grid, options.memory);
-  }
-  result.before = height_map(before, frame, result.grid, result.base);
-  result.difference = height_map(after, after_frame, result.grid, result.base);
+  map::MapFrame after_frame;
+  Comparison result = placed(before, after, frame, options, after_frame);
+  fill_heights(before, after, after_frame, sink_of(options, "Heights"), result);
+  const cv::Mat1b unseen =
+      find_unseen(before, after, after_frame, options.photos, sink_of(options, "Sights"), result);
   Maps maps = subtract(result);
   if (std::ranges::all_of(result.difference, [](float value) { return std::isnan(value); }))
-    fail("the surveys do not overlap");
-  const double least = 1e-3 * pixel;  // of float rounding, for surveys without noise
-  result.noise = options.sigmas
-                     ? given_noise(result.difference, maps.steepness,
-                                   std::hypot(options.sigmas->before, options.sigmas->after))
-                     : estimate_noise(result.difference, maps.steepness, least);
+    fail("{}: the surveys do not overlap", options.name_after.string());
+  result.noise = noise_of(result.difference, unseen, maps.steepness, options, result.grid.pixel);
   fill_sigma(maps, result);
   maps = {};
-  result.changes =
-      find_changes(result.difference, result.sigma,
-                   {result.grid, result.registration, result.noise.correlation}, options.changes);
+  result.changes = find_changes(
+      result.difference, result.sigma,
+      {result.grid, result.registration, result.noise.correlation, unseen}, options.changes);
+  cv::Mat1b left_out;
+  cv::compare(result.changes.classes, kNotCompared, left_out, cv::CMP_EQ);
+  for (cv::Mat1f* map : {&result.difference, &result.sigma})
+    map->setTo(std::numeric_limits<float>::quiet_NaN(), left_out);
   return result;
 }
 

@@ -2,8 +2,10 @@
 // What changed between two surveys of the same place.
 #pragma once
 
+#include <filesystem>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <vector>
 
 #include "base/memory.h"
 #include "base/setting_names.h"
@@ -11,9 +13,17 @@
 #include "compare/noise.h"
 #include "compare/registration.h"
 #include "map/frame.h"
+#include "map/pixel_width.h"
+#include "map/write_maps.h"
 #include "scene/mesh.h"
 
 namespace axial::compare {
+
+// The photographs of the surveys, with poses in the frame of the meshes. Empty: not known.
+struct SurveyPhotos {
+  std::vector<map::Photo> before, after;
+  int least = 3;  // number of photographs that must see a place of a survey
+};
 
 struct CompareOptions {
   double pixel = 0;    // width of a pixel of the map [m]; 0: vertex_distance() of the coarser mesh
@@ -25,9 +35,16 @@ struct CompareOptions {
   };
   std::optional<Sigmas> sigmas = {};
   ChangeOptions changes = {};
+  SurveyPhotos photos = {};
   // The memory that may be used. The need is checked before the maps are made.
   MemoryAllowance memory = {};
   SettingNames name_of = own_name;  // for the field `pixel`, "ground_sample_distance"
+  // The names of the surveys in errors.
+  std::filesystem::path name_before = "the earlier survey", name_after = "the later survey";
+  // Returns the ProgressSink for a stage with the given name. The stages "Registration"
+  // (steps), "Heights" (blocks of the map, of both surveys) and "Sights" (rows of the map, of a
+  // survey with photographs) report their progress.
+  map::StageProgress progress = {};
 };
 
 // The maps have one value for each pixel of `grid`. NaN: not compared, because one of the surveys
@@ -54,6 +71,11 @@ Eigen::Vector3d upward_direction(const Mesh& mesh);
 
 // Compares two surveys. `frame`: of both meshes.
 //
+// If the photographs of a survey are known, places that too few of them see (mark_unseen() in
+// compare/visibility.h) are compared only within regions of change most of which are seen: meshes
+// go on for a little where few photographs look, and a place above the surface of one survey may be
+// one that this survey did not look at.
+//
 // The variance of a difference is the sum of three parts. The first one is the variance of the
 // noise (Noise), times the squared steepness of the steeper surface. The second one is the square
 // of a quarter of the bend of the surface that bends more (bend_at() in compare/height_map.h):
@@ -62,8 +84,9 @@ Eigen::Vector3d upward_direction(const Mesh& mesh);
 // registration.
 //
 // Error if a mesh is none (check_mesh()), if the surveys do not overlap, if they cannot be
-// aligned (register_surveys()), if the map has too many pixels (grid_around()), and if the memory
-// does not suffice. The result does not depend on the number of threads.
+// aligned (register_surveys()); these two name the later survey. Error if the map has too many
+// pixels (grid_around()), and if the memory does not suffice. The result does not depend on the
+// number of threads.
 Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
                            const CompareOptions& options);
 

@@ -40,13 +40,15 @@ float height_or_none(const cv::Mat1f& heights, int y, int x) {
 }  // namespace
 
 cv::Mat1f height_map(const Mesh& mesh, const map::MapFrame& frame, const map::MapGrid& grid,
-                     double base, int samples) {
+                     double base, int samples, const ProgressSink& progress) {
   cv::Mat1f heights(grid.rows, grid.columns, std::numeric_limits<float>::quiet_NaN());
   const map::FaceBins bins(mesh, frame, grid, kBlock);
+  ProgressCounter counter(progress, bins.blocks());
   parallel_for(bins.blocks(), [&](std::size_t b) {
-    if (bins.faces(b).empty()) return;
-    fill_block(look_from_above(mesh, frame, grid, bins.pixels(b), samples, bins.faces(b)),
-               frame.origin.z() - base, heights);
+    if (!bins.faces(b).empty())
+      fill_block(look_from_above(mesh, frame, grid, bins.pixels(b), samples, bins.faces(b)),
+                 frame.origin.z() - base, heights);
+    counter.add();
   });
   return heights;
 }

@@ -9,6 +9,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "base/progress.h"
 #include "map/frame.h"
 #include "scene/mesh.h"
 
@@ -18,9 +19,10 @@ namespace axial::compare {
 // NaN where the mesh has no surface. The height is the mean of `samples` x `samples` samples of
 // the pixel, each of which is the highest point of the mesh on the vertical line through it.
 // `samples` is odd: with 1, the height is that of the pixel's centre. If one of the samples has no
-// surface, the pixel has none. The result does not depend on the number of threads.
+// surface, the pixel has none. `progress` counts blocks of the map. The result does not depend on
+// the number of threads.
 cv::Mat1f height_map(const Mesh& mesh, const map::MapFrame& frame, const map::MapGrid& grid,
-                     double base, int samples = 1);
+                     double base, int samples = 1, const ProgressSink& progress = {});
 
 // The memory [bytes] of height_map() with its result.
 std::uint64_t bytes_of_height_map(const Mesh& mesh, const map::MapFrame& frame,

@@ -11,7 +11,10 @@
 namespace axial::compare {
 namespace {
 
-constexpr int kReach = 4;    // of the pixels that the noise of a cell is measured against [px]
+constexpr int kReach = 4;  // of the pixels that the noise of a cell is measured against [px]
+// The roughness of independent pixels, in their standard deviations: of a pixel and of the mean of
+// four.
+const double kRoughness = std::sqrt(1.25);
 constexpr int kSquare = 16;  // side of the squares that show the correlation of pixels [px]
 
 double level(const cv::Mat1f& difference, const cv::Mat1f& steepness, int y, int x) {
@@ -86,6 +89,13 @@ double roughness_of_cell(const cv::Mat1f& difference, const cv::Mat1f& steepness
   return values.size() < kLeastPixels ? 0 : robust_deviation(std::move(values));
 }
 
+double roughness_of_map(const cv::Mat1f& difference, const cv::Mat1f& steepness) {
+  return robust_spread(
+             spread_values(difference.size(),
+                           [&](int y, int x) { return roughness(difference, steepness, y, x); }))
+      .sigma;
+}
+
 Noise uniform(const cv::Size& size, double sigma) {
   Noise noise;
   noise.typical = noise.lowest = noise.highest = sigma;
@@ -101,10 +111,9 @@ Noise estimate_noise(const cv::Mat1f& difference, const cv::Mat1f& steepness, do
   const double sigma = robust_spread(spread_values(size, [&](int y, int x) {
                          return level(difference, steepness, y, x);
                        })).sigma;
-  const double rough = robust_spread(spread_values(size, [&](int y, int x) {
-                         return roughness(difference, steepness, y, x);
-                       })).sigma;
+  const double rough = roughness_of_map(difference, steepness);
   Noise noise = uniform(size, std::max(sigma, least));
+  noise.local = rough / kRoughness;
   const double scale = rough > 0 ? sigma / rough : 0;
   const auto across = static_cast<std::size_t>(noise.cells.cols);
   parallel_for(noise.cells.total(), [&](std::size_t c) {
@@ -124,6 +133,7 @@ Noise estimate_noise(const cv::Mat1f& difference, const cv::Mat1f& steepness, do
 Noise given_noise(const cv::Mat1f& difference, const cv::Mat1f& steepness, double sigma) {
   Noise noise = uniform(difference.size(), sigma);
   noise.is_given = true;
+  noise.local = roughness_of_map(difference, steepness) / kRoughness;
   noise.correlation = correlation_of(difference, steepness, noise);
   return noise;
 }

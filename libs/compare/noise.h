@@ -14,7 +14,11 @@ struct Noise {
   cv::Mat1f cells;                 // standard deviation on level ground [m]: of each cell
   double typical = 0;              // the same for all of the map [m]
   double lowest = 0, highest = 0;  // of `cells` [m]
-  bool is_given = false;           // by the user, for all of the map
+  // The standard deviation on level ground that the differences between pixels a few pixels apart
+  // show [m]. Noise that is similar at neighbouring pixels has less of it than `typical`, and
+  // changed ground much less.
+  double local = 0;
+  bool is_given = false;  // by the user, for all of the map
   // The variance of the mean of many pixels, times their number, divided by the variance of one
   // pixel. 1 if the pixels are independent.
   double correlation = 1;

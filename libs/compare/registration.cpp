@@ -220,11 +220,13 @@ double share_used(const Samples& samples) {
 class Refinement {
  public:
   Refinement(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
-             const map::MapGrid& grid, const RegistrationOptions& options)
+             const map::MapGrid& grid, const RegistrationOptions& options,
+             const ProgressSink& progress)
       : after_(after),
         frame_(frame),
         grid_(coarse_grid(grid, options.longest_side)),
         options_(options),
+        progress_(progress),
         earlier_(height_map(before, frame, grid_, frame.origin.z(), kSamplesOfPixel)) {}
 
   Registration from(const RigidMotion& start) const {
@@ -242,13 +244,19 @@ class Refinement {
       const double length =
           step.change.head<3>().norm() * samples.radius + step.change.tail<3>().norm();
       result.converged = step.squared_length < kStop || length < 1e-6 * grid_.pixel;
-      if (result.converged || result.iterations == options_.max_iterations) return result;
+      const bool last = result.converged || result.iterations == options_.max_iterations;
+      report(result.iterations + 1, last ? result.iterations + 1 : options_.max_iterations + 1);
+      if (last) return result;
       apply(step.change, result.motion);
       ++result.iterations;
     }
   }
 
  private:
+  void report(int done, int total) const {
+    if (progress_) progress_(static_cast<std::size_t>(done), static_cast<std::size_t>(total));
+  }
+
   Samples samples_at(const RigidMotion& motion) const {
     const double base = frame_.origin.z();
     const cv::Mat1f later = height_map(after_, moved(frame_, motion), grid_, base, kSamplesOfPixel);
@@ -259,6 +267,7 @@ class Refinement {
   const map::MapFrame& frame_;
   map::MapGrid grid_;
   const RegistrationOptions& options_;
+  const ProgressSink& progress_;
   cv::Mat1f earlier_;
 };
 
@@ -289,8 +298,9 @@ double Registration::height_variance(const Eigen::Vector3d& place,
 }
 
 Registration register_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
-                              const map::MapGrid& grid, const RegistrationOptions& options) {
-  const Refinement refinement(before, after, frame, grid, options);
+                              const map::MapGrid& grid, const RegistrationOptions& options,
+                              const ProgressSink& progress) {
+  const Refinement refinement(before, after, frame, grid, options, progress);
   const Registration result = refinement.from(first_motion(before, after, frame, grid));
   return result.determined == 6 ? result : refinement.from({});
 }

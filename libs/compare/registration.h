@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "base/progress.h"
 #include "map/frame.h"
 #include "scene/decompositions.h"
 #include "scene/mesh.h"
@@ -75,9 +76,12 @@ Vector6d height_row(const Eigen::Vector3d& offset, const Eigen::Vector2d& slope)
 // map take the place of independent residuals. So it holds for residuals that are correlated over
 // distances shorter than a cell, which is 1/20 of the longer side of the map.
 //
+// `progress` counts the steps, of which there are at most `max_iterations`.
+//
 // Error if `after` has fewer than 100 vertices over the grid, or if both have surface at fewer than
 // 100 samples or in fewer than 12 cells.
 Registration register_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
-                              const map::MapGrid& grid, const RegistrationOptions& options = {});
+                              const map::MapGrid& grid, const RegistrationOptions& options = {},
+                              const ProgressSink& progress = {});
 
 }  // namespace axial::compare

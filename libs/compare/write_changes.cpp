@@ -56,11 +56,9 @@ Json json_of(const Registration& registration, const Eigen::Matrix3d& axes, doub
 }
 
 Json json_of(const Noise& noise) {
-  return {{"given", noise.is_given},
-          {"sigma", noise.typical},
-          {"lowest_sigma", noise.lowest},
-          {"highest_sigma", noise.highest},
-          {"correlated_pixels", noise.correlation}};
+  return {{"given", noise.is_given},        {"sigma", noise.typical},
+          {"local_sigma", noise.local},     {"lowest_sigma", noise.lowest},
+          {"highest_sigma", noise.highest}, {"correlated_pixels", noise.correlation}};
 }
 
 Json json_of(const std::vector<Region>& regions) {

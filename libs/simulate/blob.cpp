@@ -19,6 +19,23 @@ double lumps(const Eigen::Vector3d& p, std::uint32_t seed) {
   return 1.6 * broad + 0.7 * (cracks - 0.2) + 0.30 * rough;
 }
 
+// An arch reaches from below the ground on one side to below the ground on the other side: the
+// angles of its ends [rad].
+constexpr double kArchFrom = -0.35, kArchTo = std::numbers::pi + 0.35;
+
+// The middle of the tube at the angle `t`, from the centre of the arch.
+Eigen::Vector3d spine_of(const Arch& arch, double t) {
+  const Eigen::Vector3d along(arch.along.x(), arch.along.y(), 0), up(0, 0, 1);
+  return arch.span_radius * (std::cos(t) * along + arch.rise * std::sin(t) * up);
+}
+
+// The radius of the tube at the angle `t` in the unit direction `around`.
+double radius_of(const Arch& arch, double t, const Eigen::Vector3d& around) {
+  const Eigen::Vector3d key = spine_of(arch, t) / (2 * arch.tube_radius) + 0.7 * around;
+  const double swell = 1 + arch.roughness * lumps(key, arch.seed);
+  return arch.tube_radius * std::max(0.35, swell);
+}
+
 }  // namespace
 
 double Blob::relief(const Eigen::Vector3d& unit_direction) const {
@@ -49,10 +66,28 @@ TriangleMesh blob_mesh(const Blob& blob, double cell) {
   return mesh;
 }
 
+bool Arch::contains(const Eigen::Vector3d& p) const {
+  const Eigen::Vector3d side(along.x(), along.y(), 0), across(-along.y(), along.x(), 0);
+  const Eigen::Vector3d q = p - centre;
+  const double a = side.dot(q), z = q.z(), bulge = span_radius * (rise - 1);
+  // The cross section through `p` is the one in whose plane `p` lies.
+  double t = std::atan2(z, a);
+  if (t < -std::numbers::pi / 2) t += 2 * std::numbers::pi;
+  for (int i = 0; i < 8; ++i) {
+    const double sine = std::sin(t), cosine = std::cos(t);
+    const double off = z * cosine - a * sine - bulge * sine * cosine;
+    const double slope = -z * sine - a * cosine - bulge * (cosine * cosine - sine * sine);
+    if (!(slope < 0)) return false;  // nearer to the centre than to the tube
+    t -= off / slope;
+  }
+  if (!(t > kArchFrom && t < kArchTo)) return false;
+  const Eigen::Vector3d from_spine = q - spine_of(*this, t);
+  const double r = from_spine.norm();
+  return r < tube_radius * 1e-6 || r < radius_of(*this, t, from_spine / r);
+}
+
 TriangleMesh arch_mesh(const Arch& arch, double cell) {
-  const double pi = std::numbers::pi;
-  // From below the ground on one side to below the ground on the other side.
-  const double from = -0.35, to = pi + 0.35;
+  const double pi = std::numbers::pi, from = kArchFrom, to = kArchTo;
   const auto rows = static_cast<std::size_t>(std::ceil((to - from) * arch.span_radius *
                                                        std::max(1.0, arch.rise) / cell)) +
                     2;
@@ -64,12 +99,8 @@ TriangleMesh arch_mesh(const Arch& arch, double cell) {
     const double s = 2 * pi * static_cast<double>(c) / static_cast<double>(columns);
     const Eigen::Vector3d up(0, 0, 1);
     const Eigen::Vector3d outward = std::cos(t) * along + std::sin(t) * up;
-    const Eigen::Vector3d spine =
-        arch.span_radius * (std::cos(t) * along + arch.rise * std::sin(t) * up);
     const Eigen::Vector3d around = std::cos(s) * outward - std::sin(s) * across;
-    const Eigen::Vector3d key = spine / (2 * arch.tube_radius) + 0.7 * around;
-    const double swell = 1 + arch.roughness * lumps(key, arch.seed);
-    return arch.centre + spine + arch.tube_radius * std::max(0.35, swell) * around;
+    return arch.centre + spine_of(arch, t) + radius_of(arch, t, around) * around;
   });
 }
 

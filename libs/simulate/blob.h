@@ -43,6 +43,9 @@ struct Arch {
   double tube_radius = 0.1;
   double roughness = 0.25;  // height of the largest bumps, as a fraction of tube_radius
   std::uint32_t seed = 1;   // of the bumps
+
+  // True if the point `p` [world, m] lies inside the tube.
+  bool contains(const Eigen::Vector3d& p) const;
 };
 
 // The mesh of an arch in the world frame, with about `cell` metres between vertices.

@@ -9,9 +9,13 @@
 
 #include "base/error.h"
 #include "simulate/preset_parts.h"
+#include "simulate/survey_change.h"
 
 namespace axial::simulate {
 namespace {
+
+// The first ones of the blobs of "reef" are large boulders.
+constexpr int kReefBoulders = 30;
 
 void make_reef(Preset& preset, std::uint32_t seed, int views) {
   preset.port = {tilted_normal(0), 0.020, 0.014, 1.0, 1.52, 1.333};
@@ -23,7 +27,7 @@ void make_reef(Preset& preset, std::uint32_t seed, int views) {
   terrain.half_width = 4.4;
   terrain.half_height = 3.6;
   terrain.skirt = 12;
-  scatter(terrain, 30, {4.2, 3.4}, 0, {0.14, 0.55}, random);
+  scatter(terrain, kReefBoulders, {4.2, 3.4}, 0, {0.14, 0.55}, random);
   scatter(terrain, 40, {3.6, 2.8}, 0, {0.05, 0.14}, random);
   for (const auto& [x, y] : {std::pair{-1.3, 0.5}, {0.4, -0.7}, {1.7, 0.6}, {-0.3, 1.4}})
     add_mushroom(terrain, x + random.between(-0.2, 0.2), y + random.between(-0.2, 0.2),
@@ -123,6 +127,9 @@ void scale_terrain(Terrain& terrain, double scale) {
                          &terrain.floor.ripple_height, &terrain.floor.ripple_length, &terrain.cell,
                          &terrain.half_width, &terrain.half_height, &terrain.skirt})
     *length *= scale;
+  terrain.growth.centre *= scale;
+  terrain.growth.half *= scale;
+  for (double* length : {&terrain.growth.height, &terrain.growth.edge}) *length *= scale;
   for (Blob& blob : terrain.blobs) {
     blob.centre *= scale;
     blob.radii *= scale;
@@ -141,6 +148,7 @@ void scale_terrain(Terrain& terrain, double scale) {
 void scale_preset(Preset& preset, double scale) {
   scale_terrain(preset.terrain, scale);
   preset.texture.largest *= scale;
+  if (preset.moved) preset.moved->from *= scale;
   for (View& view : preset.views) view.centre *= scale;
 }
 
@@ -206,6 +214,11 @@ Preset make_preset(const PresetOptions& options) {
         "transect, or one of them with haze: NAME-hazy",
         options.name);
   found->make(preset, options.seed, options.views > 0 ? options.views : found->views);
+  if (options.changed) {
+    if (found->make != make_reef)
+      fail("preset '{}' has no second survey after a change: only reef has one", options.name);
+    change_survey(preset, kReefBoulders, options.seed);
+  }
   preset.terrain.relief = options.relief;
   preset.terrain.cell *= options.coarseness;
   scale_preset(preset, options.scale);

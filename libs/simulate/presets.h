@@ -24,6 +24,14 @@ struct PresetOptions {
   double relief = 1;
   // Factor of the distance between the mesh's vertices.
   double coarseness = 1;
+  // A second survey of "reef" after a change: see change_survey() (survey_change.h).
+  bool changed = false;
+};
+
+// What change_survey() moved.
+struct MovedBoulder {
+  std::size_t blob = 0;  // index into Terrain::blobs; the blob is at its new place
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();  // the centre at the old place [world, m]
 };
 
 // A scene and the views of it, in the world frame: metres, z up.
@@ -36,6 +44,7 @@ struct Preset {
   Terrain terrain;
   TextureOptions texture;
   std::vector<View> views;
+  std::optional<MovedBoulder> moved = {};  // set in a second survey after a change
   double haze = 0;  // share of scattered light in the photographs (add_haze() of render.h); 0: none
 };
 
@@ -57,8 +66,9 @@ struct Preset {
 //   that most of the ground is seen by exactly two views.
 //
 // "NAME-hazy" is the preset NAME in haze that leaves a seventh of the contrast. Throws an Error for
-// another name, for a number of views outside [0, 100000], for a scale, relief or coarseness
-// outside [0.01, 100], and for a width, height or field of view that make_lens() refuses.
+// another name, for `changed` with another preset than "reef", for a number of views outside [0,
+// 100000], for a scale, relief or coarseness outside [0.01, 100], and for a width, height or field
+// of view that make_lens() refuses.
 Preset make_preset(const PresetOptions& options);
 
 // The port of `view` in its camera frame: the preset's water surface if Preset::water_level is set,

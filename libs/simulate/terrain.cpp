@@ -102,6 +102,17 @@ double Floor::at(double x, double y) const {
   return stair(smooth + rise, layer) - rise;
 }
 
+double Growth::at(double x, double y) const {
+  if (!(height > 0)) return 0;
+  const auto inside = [&](double from_centre, double half_side) {
+    const double beyond = std::abs(from_centre) - half_side;
+    return 1 - static_cast<double>(smooth_step(static_cast<float>(-0.5 * edge),
+                                               static_cast<float>(0.5 * edge),
+                                               static_cast<float>(beyond)));
+  };
+  return height * inside(x - centre.x(), half.x()) * inside(y - centre.y(), half.y());
+}
+
 TriangleMesh terrain_mesh(const Terrain& terrain) {
   TriangleMesh mesh = floor_mesh(terrain);
   const BlobsAlongY blobs(terrain.blobs);
@@ -116,7 +127,10 @@ TriangleMesh terrain_mesh(const Terrain& terrain) {
   for (const Blob& blob : terrain.blobs) add(blob_mesh(blob, terrain.cell), &blob);
   for (const Arch& arch : terrain.arches) add(arch_mesh(arch, terrain.cell), nullptr);
   for (const Tube& tube : terrain.tubes) add(tube_mesh(tube, terrain.cell), nullptr);
-  for (Eigen::Vector3f& vertex : mesh.vertices) vertex.z() *= static_cast<float>(terrain.relief);
+  for (Eigen::Vector3f& vertex : mesh.vertices) {
+    vertex.z() += static_cast<float>(terrain.growth.at(vertex.x(), vertex.y()));
+    vertex.z() *= static_cast<float>(terrain.relief);
+  }
   return mesh;
 }
 

@@ -32,6 +32,17 @@ struct Floor {
   double at(double x, double y) const;
 };
 
+// A rectangular patch on which everything grew upwards. The growth falls from `height` to 0 in a
+// strip of the width `edge` around the border of the rectangle. Lengths are metres.
+struct Growth {
+  Eigen::Vector2d centre{0, 0}, half{0, 0};  // the middle of the patch, and half of its sides
+  double height = 0;
+  double edge = 0.01;  // above 0, at most twice the shorter one of `half`
+
+  // The growth [m] at (x, y) [m].
+  double at(double x, double y) const;
+};
+
 // The parts from which terrain_mesh() builds the seabed.
 struct Terrain {
   Floor floor;
@@ -42,8 +53,9 @@ struct Terrain {
   // The area whose vertices are `cell` apart is |x| <= half_width, |y| <= half_height [m].
   double half_width = 4;
   double half_height = 3;
-  double skirt = 10;  // width of a border with coarser cells around this area [m]
-  double relief = 1;  // factor of the z of all vertices of the mesh
+  double skirt = 10;   // width of a border with coarser cells around this area [m]
+  Growth growth = {};  // of the whole mesh
+  double relief = 1;   // factor of the z of all vertices of the mesh
 };
 
 // Returns the mesh of the whole terrain in the world frame, without most of the parts that are

@@ -18,6 +18,7 @@ import times  # noqa: E402, F401
 import quality  # noqa: E402, F401
 import meshes  # noqa: E402, F401
 import maps  # noqa: E402, F401
+import surveys  # noqa: E402, F401
 import whole_programs  # noqa: E402, F401
 import memory  # noqa: E402, F401
 import tiles  # noqa: E402, F401

@@ -4,6 +4,7 @@ input."""
 
 import json
 import math
+import os
 import random
 
 from geotiff import read_geotiff
@@ -127,6 +128,15 @@ class Outputs(CompareTest):
         # All of the ground rose by 2 cm.
         self.assertGreater(report["came"]["area"], 0.9 * report["area_compared"])
 
+    def test_changes_of_most_of_the_map_are_told(self):
+        told = lambda *arguments: self.succeeds(*self.compare("--up", "0,0,1", *arguments)).stdout
+        write(self.after, mesh_ply(*survey(after, 2)))
+        self.assertNotIn("more than half", told())
+        write(self.after, mesh_ply(*survey(lambda x, y: before(x, y) + 0.1 * math.sin(4 * x + y), 2)))
+        self.assertIn("changes count as noise", told())
+        self.assertIn("more than half of the map changed", told("--sigma-before", "0.001",
+                                                                "--sigma-after", "0.001"))
+
     def test_given_standard_deviations(self):
         self.succeeds(*self.compare("--sigma-before", "0.03", "--sigma-after", "0.04"))
         self.assertAlmostEqual(self.report()["noise"]["sigma"], 0.05, 9)
@@ -165,6 +175,15 @@ class Outputs(CompareTest):
         self.succeeds(*self.compare("--epsg", "32631", "--gsd", "0.02", "--align", "icp"))
         for kind in ("came", "gone"):
             self.assertAlmostEqual(self.report()[kind]["volume"], expected[kind]["volume"], delta=1e-5)
+        # Textures are not needed: files that are missing, and OBJ without texture coordinates.
+        os.remove(self.path("work", "grey.png"))
+        for name in ("a.obj", "b.obj"):
+            lines = read(self.path("work", name)).decode().replace("/1", "").splitlines(True)
+            write(self.path("work", name), "".join(line for line in lines if line[0] in "#vf"
+                                                   and not line.startswith("vt")))
+        self.succeeds(*self.compare("--epsg", "32631", "--gsd", "0.02", "--align", "icp"))
+        for kind in ("came", "gone"):
+            self.assertAlmostEqual(self.report()[kind]["volume"], expected[kind]["volume"], delta=1e-5)
 
 
 class WrongInput(CompareTest):
@@ -182,6 +201,10 @@ class WrongInput(CompareTest):
                 ("--sigma-before 0: must be from", "--sigma-before", "0", "--sigma-after", "0.01"),
                 ("--sigma-after nan", "--sigma-before", "0.01", "--sigma-after", "nan"),
                 ("--min-pixels 0: must be from 1", "--min-pixels", "0"),
+                ("--min-views 0: must be from 1", "--min-views", "0", "--scene", "none.mvs"),
+                ("--min-views needs --scene", "--min-views", "2"),
+                ("none.mvs", "--scene", "none.mvs"),
+                ("none.mvs", "--other-scene", "none.mvs"),
                 ("--max-memory", "--max-memory", "20"),
                 ("--output-file .: must be the name of a file", "-o", ".")):
             self.refuses_and_keeps(expected, *self.compare(*arguments))

@@ -61,6 +61,32 @@ TEST(Changes, GrowToWeakPixelsOfTheSameSign) {
   EXPECT_EQ(changes.classes(15, 11), kUnchanged);
 }
 
+TEST(Changes, ContinueALittleIntoUnseenPixels) {
+  Maps maps;
+  maps.difference(cv::Rect(10, 10, 8, 8)) = 5.f;
+  maps.difference(cv::Rect(20, 10, 8, 8)) = 5.f;
+  maps.difference(cv::Rect(18, 10, 2, 8)) = 5.f;   // unseen, joins both
+  maps.difference(cv::Rect(28, 10, 1, 8)) = 50.f;  // unseen, of another kind
+  maps.difference(cv::Rect(40, 10, 6, 8)) = 5.f;
+  maps.difference(cv::Rect(46, 10, 6, 8)) = 5.f;   // unseen, too much
+  maps.difference(cv::Rect(10, 30, 8, 8)) = 50.f;  // unseen alone
+  cv::Mat1b unseen(40, 60, std::uint8_t{0});
+  for (const cv::Rect& part : {cv::Rect(18, 10, 2, 8), cv::Rect(28, 10, 1, 8),
+                               cv::Rect(46, 10, 6, 8), cv::Rect(10, 30, 8, 8)})
+    unseen(part) = std::uint8_t{255};
+  const map::MapGrid grid{10, 20, kPixel, 60, 40};
+  const Registration registration;
+  const Changes changes =
+      find_changes(maps.difference, maps.sigma, {grid, registration, 1, unseen}, {});
+  ASSERT_EQ(changes.regions.size(), 2u);
+  EXPECT_NEAR(changes.came.area, (18 * 8 + 6 * 8) * kPixel * kPixel, 1e-9);
+  EXPECT_NEAR(changes.came.volume, 5 * changes.came.area, 1e-9);
+  EXPECT_NEAR(changes.area_compared, (40 * 60 - (1 + 6 + 8) * 8) * kPixel * kPixel, 1e-9);
+  EXPECT_EQ(changes.classes(12, 19), kCame);
+  for (const int x : {28, 46, 51}) EXPECT_EQ(changes.classes(12, x), kNotCompared);
+  EXPECT_EQ(changes.classes(33, 12), kNotCompared);
+}
+
 TEST(Changes, IgnoreSmallRegions) {
   Maps maps;
   maps.difference(cv::Rect(10, 10, 7, 1)) = 50.f;

@@ -185,7 +185,7 @@ TEST(Compare, RefusesSurveysOfDifferentPlaces) {
   const Mesh before = survey_before();
   const Mesh far = surveyed({.low = {10, 10}, .high = {12, 12}}, hills);
   EXPECT_EQ(error_of([&] { compare_surveys(before, far, kFrame, options_of(true)); }),
-            "the surveys do not overlap");
+            "the later survey: the surveys do not overlap");
   Mesh hollow = before;  // a frame without surface in the middle
   std::erase_if(hollow.faces, [&](const auto& face) {
     return hollow.vertices[face[0]].x() > 0.1f || hollow.vertices[face[0]].y() > 0.1f;
@@ -195,7 +195,7 @@ TEST(Compare, RefusesSurveysOfDifferentPlaces) {
     return other.vertices[face[0]].x() < 1.f || other.vertices[face[0]].y() < 1.f;
   });
   EXPECT_EQ(error_of([&] { compare_surveys(hollow, other, kFrame, options_of(false)); }),
-            "the surveys do not overlap");
+            "the later survey: the surveys do not overlap");
 }
 
 TEST(Compare, NeedsMemory) {

@@ -5,9 +5,11 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "io/bytes/json.h"
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
 #include "io/images/image.h"
@@ -120,6 +122,28 @@ TEST_F(SimulateUnderwater, PhotographsThroughHaze) {
   const double hazy = contrast("--haze 0.75");
   EXPECT_LT(hazy, 0.5 * clear);
   EXPECT_GT(hazy, 0.05 * clear);
+}
+
+TEST_F(SimulateUnderwater, PhotographsASecondSurveyWithOtherNoise) {
+  const std::string reef =
+      "--coarseness 8 --views 2 --width 64 --height 48 --samples 1 --truth 0 --medium water ";
+  const auto noise_of = [&](const std::string& name, const std::string& option) {
+    const std::string all = reef + "--jpeg-quality 100 --haze 1 " + option;
+    const Outcome outcome = run(all + "-o " + name);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    return io::read_color_image(folder_ / name / "water" / "0000.jpg");
+  };
+  // The haze hides the scene.
+  const cv::Mat3b first = noise_of("a", ""), second = noise_of("b", "--changed ");
+  EXPECT_EQ(cv::norm(first, noise_of("c", "")), 0);
+  EXPECT_GT(cv::norm(first, second), 0);
+  const nlohmann::json change = io::read_json(folder_ / "b" / "change.json");
+  EXPECT_FALSE(fs::exists(folder_ / "a" / "change.json"));
+  EXPECT_NEAR(change["net"].get<double>(),
+              change["came"].get<double>() - change["gone"].get<double>(), 1e-12);
+  EXPECT_EQ(change["came"].get<double>(), change["boulder_came"]["volume"].get<double>() +
+                                              change["patch_came"]["volume"].get<double>());
+  refuses("only reef has one", "-o d --preset sand --changed");
 }
 
 TEST_F(SimulateUnderwater, RefusesWrongOptionsInOneLine) {

@@ -61,8 +61,9 @@ tinygltf::Model parsed(const std::string& bytes, const std::string& file) {
 
 class GlbReader {
  public:
-  GlbReader(const std::string& bytes, std::string file)
-      : file_(std::move(file)), model_(parsed(bytes, file_)) {}
+  // `textured`: false to read vertices and faces only.
+  GlbReader(const std::string& bytes, std::string file, bool textured)
+      : file_(std::move(file)), textured_(textured), model_(parsed(bytes, file_)) {}
 
   std::vector<ImageHeader> image_headers() const {
     std::vector<ImageHeader> headers;
@@ -196,22 +197,28 @@ class GlbReader {
       fail("{}: a primitive is not made of triangles", file_);
     const Values positions = values_of(attribute(primitive, "POSITION"), TINYGLTF_TYPE_VEC3,
                                        {TINYGLTF_COMPONENT_TYPE_FLOAT}, "positions");
-    const Values uv = values_of(attribute(primitive, "TEXCOORD_0"), TINYGLTF_TYPE_VEC2,
-                                {TINYGLTF_COMPONENT_TYPE_FLOAT}, "texture coordinates");
-    if (uv.count != positions.count)
-      fail("{}: a primitive has {} positions, but {} texture coordinates", file_, positions.count,
-           uv.count);
     const std::vector<std::uint32_t> indices = indices_of(primitive, positions.count);
-    const std::uint32_t texture = texture_of(primitive.material);
     const auto before = static_cast<std::uint32_t>(positions_.size());
     for (std::size_t i = 0; i < positions.count; ++i)
       positions_.push_back(vector_at<3>(positions, i));
+    for (std::size_t i = 0; i < indices.size(); i += 3)
+      result_.mesh.faces.push_back(
+          {before + indices[i], before + indices[i + 1], before + indices[i + 2]});
+    if (textured_) add_uv(primitive, positions.count, indices);
+  }
+
+  void add_uv(const tinygltf::Primitive& primitive, std::size_t vertices,
+              const std::vector<std::uint32_t>& indices) {
+    const Values uv = values_of(attribute(primitive, "TEXCOORD_0"), TINYGLTF_TYPE_VEC2,
+                                {TINYGLTF_COMPONENT_TYPE_FLOAT}, "texture coordinates");
+    if (uv.count != vertices)
+      fail("{}: a primitive has {} positions, but {} texture coordinates", file_, vertices,
+           uv.count);
+    const std::uint32_t texture = texture_of(primitive.material);
     for (std::size_t i = 0; i < indices.size(); i += 3) {
-      auto& face = result_.mesh.faces.emplace_back();
       auto& corners = result_.uv.emplace_back();
       result_.texture_of.push_back(texture);
       for (std::size_t k = 0; k < 3; ++k) {
-        face[k] = before + indices[i + k];
         const Eigen::Vector2d at = vector_at<2>(uv, indices[i + k]);
         corners[k] = pixel_of({at.x(), 1 - at.y()}, result_.textures[texture].size());
         if (!corners[k].allFinite())
@@ -229,6 +236,7 @@ class GlbReader {
   }
 
   std::string file_;
+  bool textured_;
   tinygltf::Model model_;
   std::vector<Eigen::Vector3d> positions_;
   std::vector<int> sources_;  // the image of each texture of `result_`
@@ -243,7 +251,11 @@ std::vector<ImageHeader> image_headers_of_glb(const fs::path& path) {
 }
 
 TexturedMesh read_textured_glb(const fs::path& path, const std::optional<LocalFrame>& frame) {
-  return GlbReader(read_file(path), path.string()).read(frame);
+  return GlbReader(read_file(path), path.string(), true).read(frame);
+}
+
+Mesh read_shape_glb(const fs::path& path, const std::optional<LocalFrame>& frame) {
+  return std::move(GlbReader(read_file(path), path.string(), false).read(frame).mesh);
 }
 
 }  // namespace axial::io

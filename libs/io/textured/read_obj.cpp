@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
 #include <map>
 #include <string>
 #include <utility>
@@ -31,7 +32,8 @@ void for_each_texture(const fs::path& mtl, const Visit& visit) {
 
 class ObjReader {
  public:
-  explicit ObjReader(const fs::path& path) : path_(path) {}
+  // `textured`: false to read vertices and faces only.
+  ObjReader(const fs::path& path, bool textured) : path_(path), textured_(textured) {}
 
   TexturedMesh read(const std::optional<LocalFrame>& frame) {
     const std::string bytes = read_file(path_);
@@ -45,7 +47,7 @@ class ObjReader {
  private:
   struct Corner {
     std::uint32_t vertex = 0;
-    Eigen::Vector2d uv;
+    Eigen::Vector2d uv{0, 0};
   };
 
   void read_line(TextLine line) {
@@ -53,18 +55,24 @@ class ObjReader {
     const std::string_view key = line.word("key");
     if (key == "v") {
       positions_.push_back(read_vector(line));
-    } else if (key == "vt") {
-      const auto u = line.number<double>("u");
-      uv_.emplace_back(u, line.number<double>("v"));
     } else if (key == "f") {
       read_face(line);
+    } else if (key == "#" && line.rest().starts_with("geo_offset ")) {
+      line.word("geo_offset");
+      offset_ = read_vector(line);
+    } else if (textured_) {
+      read_texture_line(key, line);
+    }
+  }
+
+  void read_texture_line(std::string_view key, TextLine& line) {
+    if (key == "vt") {
+      const auto u = line.number<double>("u");
+      uv_.emplace_back(u, line.number<double>("v"));
     } else if (key == "usemtl") {
       texture_ = texture_of(line);
     } else if (key == "mtllib") {
       read_materials(path_.parent_path() / line.rest());
-    } else if (key == "#" && line.rest().starts_with("geo_offset ")) {
-      line.word("geo_offset");
-      offset_ = read_vector(line);
     }
   }
 
@@ -85,31 +93,36 @@ class ObjReader {
 
   Corner read_corner(std::string_view word, const TextLine& line) const {
     const std::size_t slash = word.find('/');
-    if (slash == std::string_view::npos)
-      fail("{}: the corner '{}' has no texture coordinate", line.where(), word);
     Corner corner;
     corner.vertex =
         static_cast<std::uint32_t>(index(word.substr(0, slash), positions_.size(), line, "vertex"));
+    if (!textured_) return corner;
+    if (slash == std::string_view::npos)
+      fail("{}: the corner '{}' has no texture coordinate", line.where(), word);
     const std::string_view rest = word.substr(slash + 1);
     corner.uv = uv_[index(rest.substr(0, rest.find('/')), uv_.size(), line, "texture coordinate")];
     return corner;
   }
 
   void read_face(TextLine& line) {
-    if (!texture_) fail("{}: the face has no material with a texture", line.where());
+    if (textured_ && !texture_) fail("{}: the face has no material with a texture", line.where());
     const Corner first = read_corner(line.word("corner"), line);
     Corner second = read_corner(line.word("corner"), line);
     do {
       const Corner third = read_corner(line.word("corner"), line);
-      const cv::Size size = result_.textures[*texture_].size();
       result_.mesh.faces.push_back({first.vertex, second.vertex, third.vertex});
-      const auto& uv = result_.uv.emplace_back(TexturedMesh::Corners{
-          pixel_of(first.uv, size), pixel_of(second.uv, size), pixel_of(third.uv, size)});
-      for (const Eigen::Vector2f& corner : uv)
-        if (!corner.allFinite()) fail("{}: a texture coordinate is too large", line.where());
-      result_.texture_of.push_back(*texture_);
+      if (textured_) add_uv({first.uv, second.uv, third.uv}, line);
       second = third;
     } while (!line.empty());
+  }
+
+  void add_uv(const std::array<Eigen::Vector2d, 3>& corners, const TextLine& line) {
+    const cv::Size size = result_.textures[*texture_].size();
+    const auto& uv = result_.uv.emplace_back(TexturedMesh::Corners{
+        pixel_of(corners[0], size), pixel_of(corners[1], size), pixel_of(corners[2], size)});
+    for (const Eigen::Vector2f& corner : uv)
+      if (!corner.allFinite()) fail("{}: a texture coordinate is too large", line.where());
+    result_.texture_of.push_back(*texture_);
   }
 
   std::uint32_t texture_of(const TextLine& line) const {
@@ -127,6 +140,7 @@ class ObjReader {
   }
 
   fs::path path_;
+  bool textured_;
   std::vector<Eigen::Vector3d> positions_;
   std::vector<Eigen::Vector2d> uv_;
   std::map<std::string, std::uint32_t> materials_;  // the texture of each material that has one
@@ -138,7 +152,11 @@ class ObjReader {
 }  // namespace
 
 TexturedMesh read_textured_obj(const fs::path& path, const std::optional<LocalFrame>& frame) {
-  return ObjReader(path).read(frame);
+  return ObjReader(path, true).read(frame);
+}
+
+Mesh read_shape_obj(const fs::path& path, const std::optional<LocalFrame>& frame) {
+  return std::move(ObjReader(path, false).read(frame).mesh);
 }
 
 TextureFiles texture_files_of_obj(const fs::path& path) {

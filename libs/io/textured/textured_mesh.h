@@ -116,4 +116,10 @@ bool is_textured_mesh(const std::filesystem::path& path);
 TexturedMesh read_textured_mesh(const std::filesystem::path& path,
                                 const std::optional<LocalFrame>& frame = {});
 
+// Reads the vertices and faces of a PLY, OBJ or GLB, which the extension of `path` chooses. The
+// mesh may have no textures; if it has some, no file of them is opened. Positions are treated as in
+// read_textured_ply. Errors as for read_mesh_ply(), read_textured_obj() and read_textured_glb(),
+// except those about textures.
+Mesh read_shape(const std::filesystem::path& path, const std::optional<LocalFrame>& frame = {});
+
 }  // namespace axial::io

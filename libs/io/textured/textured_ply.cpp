@@ -152,6 +152,13 @@ std::uint64_t bytes_to_read_textures(const std::filesystem::path& path) {
   return bytes + largest;
 }
 
+Mesh read_shape(const std::filesystem::path& path, const std::optional<LocalFrame>& frame) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".obj") return read_shape_obj(path, frame);
+  if (extension == ".glb") return read_shape_glb(path, frame);
+  return frame ? read_mesh_ply(path, *frame) : read_mesh_ply(path);
+}
+
 TexturedMesh read_textured_mesh(const std::filesystem::path& path,
                                 const std::optional<LocalFrame>& frame) {
   const std::string extension = lower_extension(path);

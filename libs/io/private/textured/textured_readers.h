@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <span>
@@ -13,6 +14,7 @@
 #include "io/textured/textured_mesh.h"
 #include "private/only_for_io.h"
 #include "scene/local_frame.h"
+#include "scene/mesh.h"
 
 namespace axial::io {
 
@@ -37,5 +39,9 @@ TextureFiles texture_files_of_obj(const std::filesystem::path& path);
 
 // The headers of all images of a GLB. Errors as for read_textured_glb().
 std::vector<ImageHeader> image_headers_of_glb(const std::filesystem::path& path);
+
+// read_shape() for OBJ and GLB.
+Mesh read_shape_obj(const std::filesystem::path& path, const std::optional<LocalFrame>& frame);
+Mesh read_shape_glb(const std::filesystem::path& path, const std::optional<LocalFrame>& frame);
 
 }  // namespace axial::io
