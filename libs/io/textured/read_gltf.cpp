@@ -247,7 +247,7 @@ class GlbReader {
 }  // namespace
 
 std::vector<ImageHeader> image_headers_of_glb(const fs::path& path) {
-  return GlbReader(read_file(path), path.string()).image_headers();
+  return GlbReader(read_file(path), path.string(), true).image_headers();
 }
 
 TexturedMesh read_textured_glb(const fs::path& path, const std::optional<LocalFrame>& frame) {
