@@ -78,7 +78,8 @@ def judged_map(folder, truth, seed, size, cost):
 @point(f"three seeds: RMS of the heights at most {HEIGHTS} times that of the mesh where views see it; "
        f"PSNR of the orthomosaic at least {PSNR} dB, its displacement at most {DISPLACEMENT} px; open "
        f"ground within {OPEN} % of what fewer than two photographs see; doubled edges on at most {DOUBLED} "
-       f"% more lines across depth steps than with true heights; expected errors right within a factor of {CALIBRATION}")
+       f"% more lines across depth steps than with true heights; expected errors right within a factor of "
+       f"{CALIBRATION}")
 def map_quality(work):
     texts, good = [], True
     for seed in SEEDS:
