@@ -16,12 +16,13 @@
 //     3 x 3 vertical rays in each pixel;
 //   - the displacement of the orthomosaic: tiles of 64 x 64 pixels are matched with the true one by
 //     phase correlation [px]: RMS of x and y together, mean x, mean y, and the number of tiles;
-//   - the ground that no photograph sees and the pixels without colour, as shares of the pixels
-//   with
-//     ground, and where they differ (map_truth.h);
-//   - the edges at depth steps (map_edges.h) of the orthomosaic, and of two maps with doubled edges
-//     that show what the count finds: the mean of the orthomosaic and its copy, 5 px apart, and the
-//     mean of all photographs without visibility.
+//   - the ground that no photograph sees, that one photograph sees, and the pixels without colour,
+//     as shares of the ground inside the frames of two photographs; then where they differ;
+//   - the edges at depth steps (map_edges.h) of the orthomosaic, and of three maps that show what
+//   the
+//     count finds: the mean of the orthomosaic and its copy, 5 px apart; a map from the nearest
+//     photographs that see the true points, which has no doubled edges; and the same without
+//     visibility, which has.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -185,24 +186,25 @@ void print_edges(const char* name, const EdgeCounts& counts) {
   const auto share = [&](std::size_t part) {
     return 100 * static_cast<double>(part) / static_cast<double>(counts.lines);
   };
-  std::cout << fmt::format("edges {}: extra {:.2f} missing {:.2f} % of {} lines\n", name,
-                           share(counts.extra), share(counts.missing), counts.lines);
+  std::cout << fmt::format("edges {}: doubled {:.2f} missing {:.2f} % of {} lines\n", name,
+                           share(counts.doubled), share(counts.missing), counts.lines);
 }
 
-void print_all_edges(const cv::Mat4b& ortho, const TrueMap& truth, const cv::Mat3b& naive) {
+void print_all_edges(const cv::Mat4b& ortho, const TrueMap& truth, const NearestMaps& nearest) {
   cv::Mat3b colors;
   cv::cvtColor(ortho, colors, cv::COLOR_RGBA2RGB);
   cv::Mat1b usable;
   cv::extractChannel(ortho, usable, 3);
   usable &= truth.known;
-  const std::vector<Crossing> crossings = depth_steps(truth, usable);
+  const std::vector<Crossing> crossings = depth_steps(truth, usable, nearest.wrong);
   if (crossings.empty()) fail("the map has no depth step");
   const auto print = [&](const char* name, const cv::Mat3b& map) {
     print_edges(name, count_edges(map, truth.colors, crossings));
   };
   print("of the orthomosaic", colors);
   print("of the orthomosaic and its copy, 5 px apart", doubled(colors, 4, 3));
-  print("of a map without visibility", naive);
+  print("of a map with true heights and visibility", nearest.visible);
+  print("of a map without visibility", nearest.naive);
 }
 
 int run(char** argv) {
@@ -222,7 +224,7 @@ int run(char** argv) {
   print_psnr(ortho.pixels, truth);
   print_displacement(ortho.pixels, truth);
   print_hidden_ground(ortho.pixels, truth);
-  print_all_edges(ortho.pixels, truth, naive_map(scene, dem.grid, truth, argv[5]));
+  print_all_edges(ortho.pixels, truth, nearest_maps(scene, dem.grid, truth, argv[5]));
   return 0;
 }
 

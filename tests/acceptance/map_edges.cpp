@@ -8,19 +8,21 @@
 namespace axial::map_check {
 namespace {
 
-constexpr int kReach = 12;           // [px]
-constexpr float kStep = 0.5f;        // between samples [px]
-constexpr float kLeastStep = 0.05f;  // of the heights [m]
-constexpr float kLeastContrast = 6;  // [levels/px]
-constexpr float kCounted = 0.6f;     // relative to the contrast
-constexpr float kNear = 2;           // [px]
+constexpr int kReach = 12;                      // [px]
+constexpr float kStep = 0.5f;                   // between samples [px]
+constexpr int kSamples = 26;                    // to both sides, 1 px beyond kReach
+constexpr int kLeastWrong = 6;                  // samples
+constexpr float kLeastStep = 0.05f;             // of the heights [m]
+constexpr float kLeastContrast = 6;             // [levels/px]
+constexpr float kCounted = 0.6f, kTrue = 0.2f;  // relative to the largest edge
+constexpr float kNear = 2;                      // [px]
 
 cv::Mat1f smooth_grey(const cv::Mat3b& map) {
   cv::Mat grey;
   cv::cvtColor(map, grey, cv::COLOR_RGB2GRAY);
   cv::Mat1f result;
   grey.convertTo(result, CV_32F);
-  cv::GaussianBlur(result, result, {}, 2);
+  cv::GaussianBlur(result, result, {}, 1.5);
   return result;
 }
 
@@ -68,23 +70,28 @@ cv::Point2f direction_at(const cv::Mat1f& heights, int x, int y) {
   return {dx / steepness, dy / steepness};
 }
 
-bool is_usable(const cv::Mat1b& usable, const Crossing& crossing) {
-  for (float along = -kReach - 1; along <= kReach + 1; along += kStep) {
-    const cv::Point2f at = crossing.middle + along * crossing.direction;
-    if (usable(static_cast<int>(at.y + 0.5f), static_cast<int>(at.x + 0.5f)) == 0) return false;
+// The samples of a line, at steps of kStep, whose pixel is not 0.
+int samples_in(const cv::Mat1b& pixels, const Crossing& crossing) {
+  int count = 0;
+  for (int i = -kSamples; i <= kSamples; ++i) {
+    const cv::Point2f at = crossing.middle + static_cast<float>(i) * kStep * crossing.direction;
+    count += pixels(static_cast<int>(at.y + 0.5f), static_cast<int>(at.x + 0.5f)) != 0;
   }
-  return true;
+  return count;
 }
 
 }  // namespace
 
-std::vector<Crossing> depth_steps(const TrueMap& truth, const cv::Mat1b& usable) {
+std::vector<Crossing> depth_steps(const TrueMap& truth, const cv::Mat1b& usable,
+                                  const cv::Mat1b& wrong) {
   std::vector<Crossing> crossings;
   constexpr int kBorder = kReach + 3;
   for (int y = kBorder; y < usable.rows - kBorder; ++y)
     for (int x = kBorder; x < usable.cols - kBorder; ++x) {
       const Crossing crossing{cv::Point2f(cv::Point(x, y)), direction_at(truth.heights, x, y)};
-      if (crossing.direction != cv::Point2f(0, 0) && is_usable(usable, crossing))
+      if (crossing.direction != cv::Point2f(0, 0) &&
+          samples_in(usable, crossing) == 2 * kSamples + 1 &&
+          samples_in(wrong, crossing) >= kLeastWrong)
         crossings.push_back(crossing);
     }
   return crossings;
@@ -97,11 +104,14 @@ EdgeCounts count_edges(const cv::Mat3b& map, const cv::Mat3b& true_map,
   for (const Crossing& crossing : crossings) {
     const std::vector<Peak> truth = peaks_of(true_grey, crossing), seen = peaks_of(grey, crossing);
     if (truth.empty() || truth[0].gradient < kLeastContrast) continue;
-    const float counted = kCounted * truth[0].gradient;
     ++counts.lines;
-    counts.missing += !has_peak(seen, truth[0].place, counted);
-    counts.extra += std::ranges::any_of(seen, [&](const Peak& peak) {
-      return peak.gradient > counted && !has_peak(truth, peak.place, counted / 3);
+    const float counted = seen.empty() ? 0 : kCounted * seen[0].gradient;
+    if (!has_peak(seen, truth[0].place, counted)) {
+      ++counts.missing;
+      continue;
+    }
+    counts.doubled += std::ranges::any_of(seen, [&](const Peak& peak) {
+      return peak.gradient > counted && !has_peak(truth, peak.place, kTrue * truth[0].gradient);
     });
   }
   return counts;

@@ -16,18 +16,21 @@ struct Crossing {
 
 // The crossings of a true map: lines of 12 px to both sides of each pixel between whose neighbours
 // the height differs by more than 50 mm per px, along the steepest height. All pixels of the line
-// must be `usable`.
-std::vector<Crossing> depth_steps(const TrueMap& truth, const cv::Mat1b& usable);
+// must be `usable`, and at least 3 px of it `wrong` in a map without visibility: there such a map
+// shows the rock a second time.
+std::vector<Crossing> depth_steps(const TrueMap& truth, const cv::Mat1b& usable,
+                                  const cv::Mat1b& wrong);
 
 // The edges of a map on crossings. An edge is a maximum of the gradient of the grey level along the
-// line, which is smoothed (standard deviation 2 px). The contrast of a line is the largest
-// gradient of the true map on it. Only lines with a contrast of at least 6 levels per px count.
+// line, which is smoothed (standard deviation 1.5 px). Only lines on which the largest edge of the
+// true map has at least 6 levels per px count.
 struct EdgeCounts {
   std::size_t lines = 0;
-  // Lines on which the map has an edge above 0.6 times the contrast where the true map has no edge
-  // above a third as much within 2 px.
-  std::size_t extra = 0;
-  // Lines on whose largest true edge the map has no edge above 0.6 times the contrast within 2 px.
+  // Lines on which the map shows the largest true edge within 2 px, and in addition an edge where
+  // the true map has none within 2 px. Edges of the map count above 0.6 times its largest one, and
+  // true edges above a fifth of the largest one.
+  std::size_t doubled = 0;
+  // Lines on which the map has no edge within 2 px of the largest true edge: it is displaced.
   std::size_t missing = 0;
 };
 EdgeCounts count_edges(const cv::Mat3b& map, const cv::Mat3b& true_map,

@@ -107,11 +107,15 @@ TrueMap true_map(const SimulatedScene& of, const map::MapGrid& grid) {
   return truth;
 }
 
-cv::Mat3b naive_map(const SimulatedScene& of, const map::MapGrid& grid, const TrueMap& truth,
-                    const std::filesystem::path& photographs) {
+NearestMaps nearest_maps(const SimulatedScene& of, const map::MapGrid& grid, const TrueMap& truth,
+                         const std::filesystem::path& photographs) {
   const Photographers photographers(of.preset);
-  cv::Mat3b result(grid.rows, grid.columns, cv::Vec3b(0, 0, 0));
-  cv::Mat1d nearest(grid.rows, grid.columns, std::numeric_limits<double>::infinity());
+  const simulate::RayScene scene(of.mesh);
+  const cv::Size size(grid.columns, grid.rows);
+  NearestMaps maps{cv::Mat3b(size, cv::Vec3b(0, 0, 0)), cv::Mat1b(size, std::uint8_t{0}),
+                   cv::Mat3b(size, cv::Vec3b(0, 0, 0))};
+  cv::Mat1d nearest(size, std::numeric_limits<double>::infinity());
+  cv::Mat1d nearest_visible = nearest.clone();
   for (std::size_t v = 0; v < of.preset.views.size(); ++v) {
     const simulate::View& view = of.preset.views[v];
     const cv::Mat3b photograph = io::read_color_image(photographs / fmt::format("{:04}.jpg", v));
@@ -123,14 +127,18 @@ cv::Mat3b naive_map(const SimulatedScene& of, const map::MapGrid& grid, const Tr
         const Eigen::Vector3d point(at.x(), at.y(), static_cast<double>(truth.heights(y, x)));
         const double distance = (point - view.centre).norm();
         const auto pixel = photographers.pixel_of(view, point);
-        if (!pixel || distance >= nearest(y, x)) continue;
-        nearest(y, x) = distance;
-        const Eigen::Vector3f color = bilinear(photograph, pixel->cast<float>());  // B G R
-        result(y, x) = cv::Vec3b(cv::Vec3f(color[2], color[1], color[0]));
+        if (!pixel || distance >= nearest_visible(y, x)) continue;
+        const bool sees = photographers.sees(view, scene, point);
+        const Eigen::Vector3f bgr = bilinear(photograph, pixel->cast<float>());
+        const cv::Vec3b color(cv::Vec3f(bgr[2], bgr[1], bgr[0]));
+        if (sees) nearest_visible(y, x) = distance, maps.visible(y, x) = color;
+        if (distance >= nearest(y, x)) continue;
+        nearest(y, x) = distance, maps.naive(y, x) = color;
+        maps.wrong(y, x) = sees ? 0 : 255;
       }
     });
   }
-  return result;
+  return maps;
 }
 
 }  // namespace axial::map_check

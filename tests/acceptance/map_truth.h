@@ -30,11 +30,18 @@ struct TrueMap {
 // point than a thousandth of its distance does not count.
 TrueMap true_map(const SimulatedScene& scene, const map::MapGrid& grid);
 
-// A map (R G B) without visibility: each pixel has the colour of the photograph whose camera is
-// nearest to the true point, at the projection of the point, whether or not a rock hides the point.
-// Beside rocks such a map shows the rocks a second time. `photographs`: the folder with 0000.jpg
-// and so on. Pixels in no photograph are black.
-cv::Mat3b naive_map(const SimulatedScene& scene, const map::MapGrid& grid, const TrueMap& truth,
-                    const std::filesystem::path& photographs);
+// Maps (R G B) that show each true point as the photograph shows it whose camera is nearest to the
+// point. Pixels in no photograph are black.
+struct NearestMaps {
+  // Without visibility: a rock may hide the point from the photograph. Beside rocks such a map
+  // shows the rocks a second time. 255 in `wrong`: the photograph does not see the point.
+  cv::Mat3b naive;
+  cv::Mat1b wrong;
+  cv::Mat3b visible;  // from the nearest photograph that sees the point
+};
+
+// `photographs`: the folder with 0000.jpg and so on.
+NearestMaps nearest_maps(const SimulatedScene& scene, const map::MapGrid& grid,
+                         const TrueMap& truth, const std::filesystem::path& photographs);
 
 }  // namespace axial::map_check

@@ -8,7 +8,8 @@ from points import BASE, densified, point
 from support import runs
 from support.runs import BIN, PROGRAMS, measured
 
-SEEDS = (41, 42, 43)
+# The rules of CompareSurveys were chosen with the seeds 41, 42 and 43.
+SEEDS = (44, 45, 46)
 VOLUME, FALSE = 5, 1  # at most [%]
 
 

@@ -98,7 +98,7 @@ class Killed(Scene):
 
     def test_map(self):
         folder, other = self.with_mesh()
-        for name in ("dem", "ortho", "views"):  # the blocks of a map, as a killed process leaves them
+        for name in ("dem", "ortho", "views", "sigma"):  # the blocks of a map, as a killed process leaves them
             dead = dead_process()
             write(os.path.join(folder, f"map.{name}.{dead}.tmp.blocks.{dead}.tmp.tif"), b"half")
         self.check(folder, other, "MapSurface", "-m", "scene_dense_mesh.ply", "-o", "map")

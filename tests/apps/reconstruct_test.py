@@ -258,10 +258,13 @@ class WithStandIns(unittest.TestCase):
         self.assertIn(f"Mesh: {out}/scene_dense_mesh.ply   Changes: {out}/scene_change.*   Report:",
                       said.stdout)
         (self.folder / "before" / "scene_dense_refined.ply").touch()
+        (self.folder / "before" / "scene_dense.mvs").touch()
         self.ended("--earlier", "before", "--without", "map,page", "--compare=--align none")
         commands = (self.folder / "commands").read_text().splitlines()
         self.assertEqual(commands[-1], f"CompareSurveys -i {self.folder}/before/scene_dense_refined.ply "
-                         f"--other {out}/scene_dense_refined.ply -o {out}/scene_change --align none")
+                         f"--other {out}/scene_dense_refined.ply -o {out}/scene_change --scene "
+                         f"{self.folder}/before/scene_dense.mvs --other-scene {out}/scene_dense.mvs "
+                         "--align none")
 
     def test_a_matcher_without_its_input_is_refused_at_once(self):
         for options, said in (

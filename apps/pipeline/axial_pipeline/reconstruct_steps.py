@@ -122,6 +122,17 @@ def write_run_before(name, given, out):
     write_run(out / RUN_FILE, given, todo[:number], out)
 
 
+def words_about_surveys(given, scene, words):
+    """The options of CompareSurveys that the user did not give among `words`: registration, and the
+    scenes of both surveys if the earlier one has one beside its mesh."""
+    again = {word.partition("=")[0] for word in words}
+    earlier = pathlib.Path(given.earlier).with_name(scene.name)
+    known = [("--align", "icp")]
+    if earlier.exists() and not again & {"--scene", "--other-scene"}:
+        known += [("--scene", earlier), ("--other-scene", scene)]
+    return [word for option in known if option[0] not in again for word in option]
+
+
 def survey_steps(given, out):
     """The steps from the mesh to maps, to the comparison with an earlier survey, and to the page."""
     programs, scene, refractive = Programs(given.programs), out / "scene_dense.mvs", ("--refractive", 1)
@@ -135,11 +146,9 @@ def survey_steps(given, out):
                    makes=Files(*(out / f"scene_map.{kind}.tif" for kind in ("dem", "ortho", "views"))),
                    reads=reads["map"] + reads["texture"])
     if "compare" in wanted:
-        aligned = any(word.split("=")[0] == "--align" for word in options["compare"])
-        yield Step("compare", programs.compare_surveys(given.earlier, best_mesh(given, out),
-                                                       out / "scene_change",
-                                                       *(() if aligned else ("--align", "icp")),
-                                                       *options["compare"]),
+        yield Step("compare", programs.compare_surveys(
+                       given.earlier, best_mesh(given, out), out / "scene_change",
+                       *words_about_surveys(given, scene, options["compare"]), *options["compare"]),
                    makes=out / "scene_change.json", reads=[given.earlier, *reads["compare"]])
     if "page" in wanted:
         yield Step("page", programs.view_scene(scene, out / "scene_dense.ply", whole, out / "page",
