@@ -18,9 +18,9 @@ struct Options {
   std::filesystem::path report;       // the folder to write
   MapOptions maps;
   DepthMapOptions depth_maps;
-  std::filesystem::path run;  // what `reconstruct` says about its run; empty: none
-  std::filesystem::path sfm_model;    // folder of a COLMAP model, for residuals; empty: none
-  std::filesystem::path truth;        // true mesh, for distances of the cloud; empty: none
+  std::filesystem::path run;        // what `reconstruct` says about its run; empty: none
+  std::filesystem::path sfm_model;  // folder of a COLMAP model, for residuals; empty: none
+  std::filesystem::path truth;      // true mesh, for distances of the cloud; empty: none
   std::uint64_t max_points = 10'000'000;
   int photograph_size = 1024;  // longest side of the reduced photographs [px]
   int texture_size = 4096;     // longest side of the reduced textures [px]
