@@ -10,7 +10,8 @@ import { Mesh } from "./mesh.js";
 const GROUND = 0x171a1e;
 const STILL = 250; // [ms] without a move before more points are drawn
 // The time that a picture may take while the view moves, and a portion when it stands still [ms].
-const MOVING_TIME = 30, PORTION_TIME = 150;
+const MOVING_TIME = 40, PORTION_TIME = 150;
+const FEWEST = 10000; // points while the view moves
 
 /** Whether the processor draws, because there is no graphics card. Smooth edges would then take most
  * of the time of a picture. */
@@ -95,12 +96,20 @@ export class View {
     clearTimeout(this.timer);
     cancelAnimationFrame(this.next);
     this.complete = false;
-    this.asked ??= requestAnimationFrame(() => {
+    this.asked ??= requestAnimationFrame(begin => {
       this.asked = null;
       this.cloud.show(0, this.moving);
       this.draw();
+      requestAnimationFrame(end => { if (this.asked) this.adapt(end - begin); });
     });
     if (!this.loading) this.timer = setTimeout(() => this.rest(), STILL);
+  }
+
+  /** Chooses the number of points for the next picture while the view moves, by the time that the last
+   * picture took [ms]. */
+  adapt(time) {
+    const factor = Math.min(Math.max(MOVING_TIME / time, 0.7), 1.05);
+    this.moving = Math.min(Math.max(this.moving * factor, FEWEST), Math.max(this.cloud.points, FEWEST));
   }
 
   /** Draws all points, in portions, so that the page stays usable: computers without a graphics card
@@ -114,7 +123,7 @@ export class View {
     const begin = performance.now();
     this.drawAndWait();
     const perPoint = (performance.now() - begin) / Math.max(points, 1);
-    if (points > 10000) this.moving = Math.max(MOVING_TIME / perPoint, 10000);
+    if (points > FEWEST) this.moving = Math.max(MOVING_TIME / 2 / perPoint, FEWEST);
     this.drawMore(points, Math.max(PORTION_TIME / perPoint, 50000));
   }
 
