@@ -131,6 +131,12 @@ class Residuals(QualityCase):
         self.assertEqual([photo["number"] for photo in found["photographs"]], list(range(len(NAMES))))
         self.assertEqual(sum(photo["observations"] for photo in found["photographs"]), COUNT)
 
+    def test_a_name_in_a_folder_is_not_the_name_outside(self):
+        os.makedirs(os.path.join(self.model, "sub"))
+        shutil.copy(self.images[0], os.path.join(self.model, "sub", NAMES[1]))
+        write_model(self.model, image_names=[f"sub/{NAMES[1]}", *NAMES[1:]])
+        self.assertEqual(self.residuals()["observations"], COUNT)
+
     def test_a_wrong_model_is_refused(self):
         self.use_model()
         write_model(self.path("moved"), shift=0.05)
