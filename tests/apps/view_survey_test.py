@@ -239,6 +239,10 @@ class Page(SurveyCase):
         self.assertEqual(page.errors, [])
 
     def check_layers(self, page):
+        focused = lambda name: page.value(f"document.getElementById('{name}').focus(), document.activeElement.id")
+        self.assertEqual(focused("map-canvas"), "map-canvas")
+        for covered in ("canvas", "show-points"):
+            self.assertNotEqual(focused(covered), covered)
         seen = {}
         for layer in ("ortho", "height", "views", "difference"):
             self.choose(page, layer)
