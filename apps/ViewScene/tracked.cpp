@@ -21,17 +21,24 @@ namespace fs = std::filesystem;
 
 constexpr double kSamePose = 2e-3;  // shift relative to the depth, and angle [rad]
 
-// The calibrated image of the scene whose path ends with `name`. Empty if there is none.
+// The calibrated image of the scene whose path ends with `name`. Empty if there is none. All names
+// begin in one folder, so of a.jpg and b/a.jpg the shorter path belongs to the name a.jpg.
 std::optional<std::size_t> image_named(const Scene& scene, const std::string& name) {
   std::optional<std::size_t> found;
+  std::size_t length = 0, of_length = 0;  // of the shortest path, and the number of such paths
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
     const std::string path = fs::path(scene.images[i].path).generic_string();
     if (!scene.images[i].calibrated || !path.ends_with(name)) continue;
     const std::size_t before = path.size() - name.size();
     if (before > 0 && path[before - 1] != '/') continue;
-    if (found) fail("image {}: the scene has several images of this name", name);
-    found = i;
+    if (!found || path.size() < length) {
+      found = i;
+      length = path.size();
+      of_length = 0;
+    }
+    if (path.size() == length) ++of_length;
   }
+  if (of_length > 1) fail("image {}: the scene has several images of this name", name);
   return found;
 }
 

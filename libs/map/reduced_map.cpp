@@ -87,9 +87,9 @@ cv::Mat read_pixels(GDALDatasetH file, MapKind kind, const MapGrid& grid, cv::Si
 void mark_missing(GDALDatasetH file, cv::Mat1f values) {
   int is_stated = 0;
   const double no_value = GDALGetRasterNoDataValue(GDALGetRasterBand(file, 1), &is_stated);
-  if (!is_stated) return;
   for (float& value : values)
-    if (value == static_cast<float>(no_value)) value = std::numeric_limits<float>::quiet_NaN();
+    if (!std::isfinite(value) || (is_stated && value == static_cast<float>(no_value)))
+      value = std::numeric_limits<float>::quiet_NaN();
 }
 
 }  // namespace

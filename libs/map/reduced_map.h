@@ -15,7 +15,8 @@ namespace axial::map {
 struct ReducedMap {
   MapGrid grid;                   // of the whole map in the file
   std::optional<WorldAxes> axes;  // empty: the file does not state them
-  // R G B alpha (CV_8UC4) of a map of colours. Otherwise CV_32FC1: NaN where the map has no value.
+  // R G B alpha (CV_8UC4) of a map of colours. Otherwise CV_32FC1: NaN where the map has no finite
+  // value.
   cv::Mat pixels;
 
   // The grid of `pixels`: it covers the same ground as `grid`, and its pixels may be wider than

@@ -9,7 +9,7 @@ import unittest.mock
 from pipeline_folder import InFolder
 from programs import main
 
-from axial_pipeline import cluster, jobs, reconstruct_options, reconstruct_steps, steps
+from axial_pipeline import cluster, jobs, one_step, reconstruct_options, reconstruct_steps, steps
 from axial_pipeline.failure import Failure
 
 
@@ -60,6 +60,11 @@ class Jobs(InFolder):
         with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
             return jobs.Survey({"given": given, "images": images,
                                 "node": {"cpus": 64, "memory_mb": 10**6}}, reconstruct_steps.steps)
+
+    def test_programs_that_plan_their_memory_keep_to_their_job(self):
+        self.assertEqual(one_step.limits_of(["bin/CompareSurveys", "--max-threads=1"], 2, 1000),
+                         ["--max-memory", "800"])
+        self.assertEqual(one_step.limits_of(["bin/ViewScene"], 2, 1000), [])
 
     def test_only_fusion_exports(self):
         for export in ("--pinhole-export export", "--pinhole-export=export", "--pinhole export"):

@@ -15,8 +15,8 @@ import unittest.mock
 from pipeline_folder import PIPELINE, InFolder
 from programs import main
 
-from axial_pipeline import (colmap, files, lens, positions, reconstruct_steps, run_file, running,
-                            steps)
+from axial_pipeline import (colmap, files, lens, positions, reconstruct_options, reconstruct_steps,
+                            run_file, running, steps, versions)
 from axial_pipeline.failure import Failure
 from axial_pipeline.programs import Programs, default_folder
 
@@ -309,6 +309,9 @@ class RunFile(InFolder):
 
 
 class ProgramCommands(InFolder):
+    def test_every_program_of_a_run_is_asked_for_its_version(self):
+        self.assertEqual(set(reconstruct_options.PROGRAMS) - set(versions.QUESTIONS), set())
+
     def test_commands(self):
         programs = Programs("bin")
         for command, words in (

@@ -266,6 +266,31 @@ class WithStandIns(unittest.TestCase):
                          f"{self.folder}/before/scene_dense.mvs --other-scene {out}/scene_dense.mvs "
                          "--align none")
 
+    def test_another_scene_of_the_earlier_survey_is_compared_again(self):
+        (self.folder / "before").mkdir()
+        (self.folder / "before" / "scene_dense_mesh.ply").touch()
+        scene = self.folder / "before" / "scene_dense.mvs"
+        options = ["--earlier", "before", "--without", "map,page"]
+        scene.touch()
+        self.assertEqual(self.ended(*options).stdout.count("done before"), 0)
+        self.assertEqual(self.ended(*options).stdout.count("done before"), 10)
+        scene.write_text("other")
+        self.assertEqual(self.ended(*options).stdout.count("done before"), 9)
+
+    def test_its_own_mesh_is_no_earlier_survey(self):
+        self.assertEqual(self.ended("--without", "map,page").returncode, 0)
+        for earlier in ("out", "out/scene_dense_mesh.ply"):
+            said = self.ended("--earlier", earlier, "--without", "map,page")
+            self.assertEqual(said.returncode, 1)
+            self.assertIn("this run replaces this mesh; give another --output", said.stderr)
+
+    def test_maps_of_other_options_do_not_keep_old_errors(self):
+        self.assertEqual(self.ended().returncode, 0)
+        errors = self.folder / "out" / "scene_map.sigma.tif"
+        errors.touch()
+        self.assertEqual(self.ended("--map=--image-noise 0").returncode, 0)
+        self.assertFalse(errors.exists())
+
     def test_a_matcher_without_its_input_is_refused_at_once(self):
         for options, said in (
                 (["spatial"], "--matcher spatial: none of the photographs in "

@@ -131,6 +131,12 @@ class Residuals(QualityCase):
         self.assertEqual([photo["number"] for photo in found["photographs"]], list(range(len(NAMES))))
         self.assertEqual(sum(photo["observations"] for photo in found["photographs"]), COUNT)
 
+    def test_a_name_in_a_folder_is_not_the_name_outside(self):
+        os.makedirs(os.path.join(self.model, "sub"))
+        shutil.copy(self.images[0], os.path.join(self.model, "sub", NAMES[1]))
+        write_model(self.model, image_names=[f"sub/{NAMES[1]}", *NAMES[1:]])
+        self.assertEqual(self.residuals()["observations"], COUNT)
+
     def test_a_wrong_model_is_refused(self):
         self.use_model()
         write_model(self.path("moved"), shift=0.05)
@@ -164,6 +170,10 @@ class QualityPage(QualityCase):
                    "choice.dispatchEvent(new Event('change')); })()")
         self.assertIn("photographs/", page.value("document.querySelector('.arrows image')"
                                                  ".getAttribute('href')"))
+        # No photograph has enough observations to free its pose.
+        page.value("new axial.residuals.constructor({ ...axial.scene, residuals: "
+                   "{ ...axial.scene.residuals, rms_freed: 0 } })")
+        self.assertNotIn("poses do not fit", self.text(page, "#residuals"))
         self.assertEqual(page.errors, [])
 
     def test_a_wrong_port_is_named(self):
@@ -200,6 +210,11 @@ class QualityPage(QualityCase):
         # The point of a place, by its colour: errors are 0, 20 and 40 mm, so there are 3 colours.
         triples = {tuple(seen[2][k:k + 3]) for k in range(0, len(seen[2]), 3)}
         self.assertEqual(len(triples), 3)
+        # A way to colour that is chosen before the first points are loaded.
+        page.value("(() => { const { cloud } = axial.view, { chunks, points } = cloud;"
+                   "Object.assign(cloud, { chunks: [], points: 0 }); axial.colours.choose('height');"
+                   "Object.assign(cloud, { chunks, points }); axial.colours.paint(chunks[0]); })()")
+        self.assertEqual(colours(), seen[1])
         page.value("axial.colours.choose('photographs')")
         self.assertEqual(colours(), before)
         for (place, views), error in ((points()[0], 0), (points()[1], 20), (points()[2], 40)):

@@ -189,6 +189,7 @@ class Folder(SurveyCase):
                                {**RUN, "steps": [{**RUN["steps"][0], "seconds": -1}]}),
                               ("command[0] 3: must be a text", {**RUN, "command": [3]})):
             refused("run.json: " + expected, "run.json", json.dumps(run))
+        refused("run.json: malformed JSON: more than 1000 ", "run.json", "[" * 10**6 + "]" * 10**6)
         self.refuses_and_keeps("none.dem.tif: ", *self.view("--map", "none"))
         self.refuses_and_keeps("none.json: ", *self.view("--change", "none"))
         self.refuses_and_keeps("none.json: ", *self.view("--run", "none.json"))
@@ -231,12 +232,17 @@ class Page(SurveyCase):
         page = self.opened()
         self.check_layers(page)
         self.check_points(page)
+        self.check_early_points(page)
         self.check_changes(page)
         self.check_depth(page)
         self.check_run(page)
         self.assertEqual(page.errors, [])
 
     def check_layers(self, page):
+        focused = lambda name: page.value(f"document.getElementById('{name}').focus(), document.activeElement.id")
+        self.assertEqual(focused("map-canvas"), "map-canvas")
+        for covered in ("canvas", "show-points"):
+            self.assertNotEqual(focused(covered), covered)
         seen = {}
         for layer in ("ortho", "height", "views", "difference"):
             self.choose(page, layer)
@@ -280,6 +286,19 @@ class Page(SurveyCase):
         before = page.value("axial.map.placeOf(0, 0)")
         page.press("ArrowLeft", 37)
         self.assertNotEqual(page.value("axial.map.placeOf(0, 0)"), before)
+        page.press("R", 82, "R")
+        self.assertAlmostEqual(page.value("axial.map.centre[0]"), EAST, 6)
+        self.assertFalse(page.value("axial.map.canvas.dispatchEvent(new MouseEvent('contextmenu', "
+                                    "{ cancelable: true }))"))
+
+    def check_early_points(self, page):
+        """A point that is added before the heights are loaded gets its height with them."""
+        page.value("axial.map.heights = new axial.map.heights.constructor(null, null)")
+        page.value(f"axial.map.picked([{EAST}, {NORTH}])")
+        row = "[...document.querySelectorAll('#map .grid tr')].find(row => row.innerText[0] == '3').innerText"
+        self.assertIn("none", page.value(row))
+        page.value("axial.map.load()")
+        self.assertIn(f"{UP + height(0):.3f}", page.value(row))
 
     def check_changes(self, page):
         text = page.value("document.getElementById('map').innerText")

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "support/empty_folder.h"
 #include "support/error_of.h"
@@ -69,6 +70,17 @@ TEST(ReducedMap, AveragesHeightsAndLeavesMissingOnesOut) {
       }
     }
   }
+}
+
+TEST(ReducedMap, LeavesInfiniteHeightsOut) {
+  const fs::path path = test::empty_folder() / "map.tif";
+  cv::Mat1f heights = ramp();
+  heights(7, 5) = std::numeric_limits<float>::infinity();
+  heights(7, 6) = -std::numeric_limits<float>::infinity();
+  write(path, MapKind::heights, heights);
+  const cv::Mat1f pixels = read_reduced_map(path, MapKind::heights, 1024).pixels;
+  EXPECT_TRUE(std::isnan(pixels(7, 5)) && std::isnan(pixels(7, 6)));
+  EXPECT_EQ(pixels(7, 7), heights(7, 7));
 }
 
 TEST(ReducedMap, ReadsCountsColoursAndClasses) {

@@ -13,7 +13,7 @@ from .running import die_with
 from .steps import Records, is_done, perform
 
 WITH_LIMITS = ("DensifyPointCloud", "ReconstructMesh", "RefineMesh", "TextureMesh",
-               "MapSurface")
+               "MapSurface", "CompareSurveys")
 
 
 def limits_of(command, cpus, memory):

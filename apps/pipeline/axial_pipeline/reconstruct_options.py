@@ -155,6 +155,11 @@ def mesh_of_earlier_survey(path):
     return found
 
 
+def is_own_mesh(mesh, out):
+    """Whether a run in the folder `out` makes the file `mesh`."""
+    return mesh.parent == out and mesh.name.startswith(("scene_dense", "scene_textured"))
+
+
 def check(given):
     """Checks everything that can be known before hours of work, and makes all paths absolute,
     because the programs look up relative paths in different folders."""
@@ -187,6 +192,8 @@ def check(given):
     colmap.check_installed()
     matching.check(given)
     given.output = str(pathlib.Path(given.output).resolve())
+    if given.earlier and is_own_mesh(pathlib.Path(given.earlier), pathlib.Path(given.output)):
+        raise Failure(f"--earlier {given.earlier}: this run replaces this mesh; give another --output")
     if pathlib.Path(given.output).is_relative_to(given.images):
         raise Failure(f"--output {given.output}: lies in the folder of the images")
     if given.cluster:

@@ -122,11 +122,16 @@ def write_run_before(name, given, out):
     write_run(out / RUN_FILE, given, todo[:number], out)
 
 
+def earlier_scene(given, scene):
+    """Where the scene of the earlier survey is, if there is one."""
+    return pathlib.Path(given.earlier).with_name(scene.name)
+
+
 def words_about_surveys(given, scene, words):
     """The options of CompareSurveys that the user did not give among `words`: registration, and the
     scenes of both surveys if the earlier one has one beside its mesh."""
     again = {word.partition("=")[0] for word in words}
-    earlier = pathlib.Path(given.earlier).with_name(scene.name)
+    earlier = earlier_scene(given, scene)
     known = [("--align", "icp")]
     if earlier.exists() and not again & {"--scene", "--other-scene"}:
         known += [("--scene", earlier), ("--other-scene", scene)]
@@ -144,12 +149,14 @@ def survey_steps(given, out):
                                                *mask_words(options["texture"], options["map"]),
                                                *options["map"]),
                    makes=Files(*(out / f"scene_map.{kind}.tif" for kind in ("dem", "ortho", "views"))),
-                   reads=reads["map"] + reads["texture"])
+                   reads=reads["map"] + reads["texture"],
+                   anew=[out / "scene_map.sigma.tif"])  # not every command writes it again
     if "compare" in wanted:
         yield Step("compare", programs.compare_surveys(
                        given.earlier, best_mesh(given, out), out / "scene_change",
                        *words_about_surveys(given, scene, options["compare"]), *options["compare"]),
-                   makes=out / "scene_change.json", reads=[given.earlier, *reads["compare"]])
+                   makes=out / "scene_change.json",
+                   reads=[given.earlier, earlier_scene(given, scene), *reads["compare"]])
     if "page" in wanted:
         yield Step("page", programs.view_scene(scene, out / "scene_dense.ply", whole, out / "page",
                                                *refractive, *words_about_results(given, out),

@@ -7,7 +7,7 @@ import subprocess
 # How a program is asked for its version, which is the first line that it prints.
 QUESTIONS = {"colmap": "help", **dict.fromkeys(
     ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh", "TextureMesh",
-     "MapSurface", "ViewScene", "EvaluateReconstruction"), "--version")}
+     "MapSurface", "CompareSurveys", "ViewScene", "EvaluateReconstruction"), "--version")}
 MOST_SECONDS = 20
 
 

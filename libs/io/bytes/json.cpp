@@ -13,11 +13,14 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr int kDeepest = 1000;  // copies and texts of values need the stack for each level
+
 // Remembers the keys of every open object. The parser itself silently keeps the last of two values
 // with the same key.
 class DuplicateKeys {
  public:
-  bool operator()(int /*depth*/, Json::parse_event_t event, const Json& parsed) {
+  bool operator()(int depth, Json::parse_event_t event, const Json& parsed) {
+    if (depth > kDeepest) fail("more than {} lists or objects lie inside one another", kDeepest);
     if (event == Json::parse_event_t::object_start) open_.emplace_back();
     if (event == Json::parse_event_t::object_end) open_.pop_back();
     if (event == Json::parse_event_t::key && !open_.back().insert(parsed).second)

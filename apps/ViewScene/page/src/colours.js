@@ -103,6 +103,7 @@ export class Colours {
   choose(name) {
     this.mode = name;
     this.range = null;
+    this.early = !this.cloud.points;
     const mode = MODES[name];
     const legend = byId("legend");
     legend.hidden = !mode.measureOf;
@@ -118,6 +119,7 @@ export class Colours {
 
   /** Colours the points of a chunk, for example of one that was loaded later. */
   paint(chunk) {
+    if (this.early) return this.choose(this.mode); // the range was that of no points
     if (!this.range) return chunk.recolor(null);
     const [low, high] = this.range, value = this.measureOf(chunk);
     const colors = new Uint8Array(3 * chunk.entry.points), factor = 255 / (high - low || 1);

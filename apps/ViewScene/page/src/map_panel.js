@@ -12,11 +12,16 @@ const metres = value => value === null ? "none" : `${value.toFixed(3)} m`;
 export function startMap(scene, show) {
   const { map } = scene, points = make("div", {}), legend = make("div", { class: "legend" });
   const view = new MapView(map, place => {
-    if (place) view.path.push({ place, height: view.heights.at(place) });
+    if (place) view.path.push({ place });
     else view.path.pop();
     list();
-  });
-  const list = () => { points.replaceChildren(...rowsOf(view.path)); view.draw(); aimable(); };
+  }, () => list());
+  const list = () => {
+    for (const point of view.path) point.height = view.heights.at(point.place);
+    points.replaceChildren(...rowsOf(view.path));
+    view.draw();
+    aimable();
+  };
   const in3d = make("button", { id: "map-show", onclick: () => show(target(scene, view)) }, "Show in 3D");
   const aimable = () => { in3d.disabled = !target(scene, view); };
   const buttons = map.layers.map(layer => make("button", { "data-layer": layer.id, onclick: () => {

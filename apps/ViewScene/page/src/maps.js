@@ -9,9 +9,10 @@ const STEPS = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDo
 const PIXELS_WHEN_NEAR = 3; // from this size on, pixels of a layer are drawn as squares
 
 export class MapView {
-  /** `map`: its part of data/scene.js. `picked(place)`: called for a click or a tap. */
-  constructor(map, picked) {
-    Object.assign(this, { map, picked, path: [], region: null, pointers: new Map(), travelled: 0 });
+  /** `map`: its part of data/scene.js. `picked(place)`: called for a click or a tap, and with null to
+   * remove the last place. `loaded()`: called when the heights are loaded. */
+  constructor(map, picked, loaded) {
+    Object.assign(this, { map, picked, loaded, path: [], region: null, pointers: new Map(), travelled: 0 });
     this.canvas = byId("map-canvas");
     this.images = new Map();
     this.heights = new Heights(null, null);
@@ -25,6 +26,7 @@ export class MapView {
     await loadAll("heights", [this.map.heights], (entry, bytes) => {
       this.heights = new Heights(entry, bytes);
     });
+    this.loaded();
   }
 
   /** Shows a layer of the map. */
@@ -135,6 +137,8 @@ export class MapView {
       const notches = Math.sign(event.deltaY) * Math.min(Math.abs(event.deltaY), 100);
       this.zoom(Math.exp(-0.002 * notches), event.offsetX, event.offsetY);
     }, { passive: false });
+    // Browsers do not report the release of the button to a page behind a menu.
+    canvas.addEventListener("contextmenu", event => event.preventDefault());
     canvas.addEventListener("blur", () => this.aim(false));
     canvas.addEventListener("keydown", event => this.key(event));
   }
@@ -154,7 +158,7 @@ export class MapView {
     if (step) this.pan(40 * step[0], 40 * step[1]);
     else if (event.key === "+" || event.key === "=") this.zoom(1.25);
     else if (event.key === "-") this.zoom(0.8);
-    else if (event.key === "r") this.fit();
+    else if (event.key.toLowerCase() === "r") this.fit();
     else if (event.key === "Enter") this.picked(this.placeOf(width / 2, height / 2));
     else if (event.key === "Backspace") this.picked(null);
     else return;

@@ -59,7 +59,8 @@ export class Residuals {
   /** The judgement, in words. */
   verdict() {
     const { cameras, observations, unseen, rms, rms_freed: freed } = this.all;
-    const posesFit = rms <= POSES * freed;
+    // No pose was freed if all photographs have too few observations.
+    const posesFit = !freed || rms <= POSES * freed;
     const found = cameras.map((camera, k) => camera.found ? k : -1).filter(k => k >= 0);
     const tells = cameras.filter(camera => camera.tells);
     const parts = [table([["Error (RMS)", pixels(rms)], ["Observations", count(observations)],

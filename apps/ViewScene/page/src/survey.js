@@ -19,8 +19,9 @@ export function startSurvey(scene, show) {
   return map;
 }
 
-/** To be called when a tab is chosen: the map covers the 3D view. */
+/** To be called when a tab is chosen: the map covers the 3D view, which then has no keyboard focus. */
 export function showStage(tab) {
   byId("map-stage").hidden = tab !== "map";
+  for (const id of ["canvas", "toolbar"]) byId(id).inert = tab === "map";
   map?.resize();
 }
