@@ -97,10 +97,13 @@ def main():
     given = parser.parse_args()
     if not CHROMIUM:
         sys.exit("Chromium is not installed")
+    given.output.mkdir(parents=True, exist_ok=True)
     for name in given.only:
         picture = taken(given.page, *PICTURES[name])
         if picture:
             (given.output / f"{name}.jpg").write_bytes(picture)
+        else:
+            print(f"{name}: the page does not have what it shows")
 
 
 if __name__ == "__main__":

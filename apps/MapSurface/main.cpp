@@ -51,6 +51,16 @@ map::MapFiles map_files(const Settings& settings) {
   return files;
 }
 
+// Removes maps of an earlier run that this run does not write: they belong to another map.
+void remove_stale_maps(const Settings& settings) {
+  for (const char* end : {".sigma.tif", ".hillshade.tif", ".contours.geojson"}) {
+    const fs::path file = settings.output.string() + end;
+    const std::vector<fs::path> written = map_files(settings).all();
+    if (std::ranges::find(written, file) == written.end() && fs::remove(file))
+      log_info("removed {}, which belonged to an earlier map", file.string());
+  }
+}
+
 // The mesh, with its textures if it has some.
 TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame) {
   const std::string work = "reading " + settings.mesh.string();
@@ -235,6 +245,7 @@ void write(const Settings& settings, const TexturedMesh& mesh, const FaceFacts& 
   };
   log_info("{:.1f} % of the map have a height, {:.1f} % have a colour", share(report.surface),
            share(report.colored));
+  remove_stale_maps(settings);
   for (const fs::path& file : files.all()) log_info("wrote {}", file.string());
 }
 

@@ -40,6 +40,7 @@ struct Errors {
   }
 };
 
+// The RMS of those of `errors` that are finite.
 double rms_of(const Vectors& errors) {
   double sum = 0;
   std::size_t count = 0;
@@ -56,11 +57,19 @@ Data grid_of(const pose::ResidualPattern& pattern) {
   return {{"columns", pattern.columns}, {"rows", pattern.rows}, {"cells", cells}};
 }
 
+// The RMS with the pose of each photograph free. A photograph with few observations keeps its pose.
+double rms_with_free_poses(const Errors& errors) {
+  Vectors best = errors.freed;
+  for (std::size_t i = 0; i < best.size(); ++i)
+    if (!best[i].allFinite()) best[i] = errors.stated[i];
+  return rms_of(best);
+}
+
 Data errors_of(const Errors& errors) {
   return {{"observations", errors.pixels.size()},
           {"unseen", errors.unseen},
           {"rms", rounded(rms_of(errors.stated))},
-          {"rms_freed", rounded(rms_of(errors.freed))}};
+          {"rms_freed", rounded(rms_with_free_poses(errors))}};
 }
 
 Data camera_of(const CameraModel& model, const Errors& errors,

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -21,26 +22,45 @@ namespace fs = std::filesystem;
 
 constexpr double kSamePose = 2e-3;  // shift relative to the depth, and angle [rad]
 
-// The calibrated image of the scene whose path ends with `name`. Empty if there is none. All names
-// begin in one folder, so of a.jpg and b/a.jpg the shorter path belongs to the name a.jpg.
-std::optional<std::size_t> image_named(const Scene& scene, const std::string& name) {
-  std::optional<std::size_t> found;
-  std::size_t length = 0, of_length = 0;  // of the shortest path, and the number of such paths
-  for (std::size_t i = 0; i < scene.images.size(); ++i) {
-    const std::string path = fs::path(scene.images[i].path).generic_string();
-    if (!scene.images[i].calibrated || !path.ends_with(name)) continue;
-    const std::size_t before = path.size() - name.size();
-    if (before > 0 && path[before - 1] != '/') continue;
-    if (!found || path.size() < length) {
-      found = i;
-      length = path.size();
-      of_length = 0;
+// The calibrated images of a scene by the ends of their paths.
+class ImagesByName {
+ public:
+  explicit ImagesByName(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.images.size(); ++i) {
+      if (!scene.images[i].calibrated) continue;
+      const fs::path path = scene.images[i].path;
+      by_file_[path.filename().string()].push_back({i, path.generic_string()});
     }
-    if (path.size() == length) ++of_length;
   }
-  if (of_length > 1) fail("image {}: the scene has several images of this name", name);
-  return found;
-}
+
+  // The image whose path ends with `name`. Empty if there is none. All names begin in one folder,
+  // so of a.jpg and b/a.jpg the shorter path belongs to the name a.jpg.
+  std::optional<std::size_t> find(const std::string& name) const {
+    const auto images = by_file_.find(fs::path(name).filename().string());
+    if (images == by_file_.end()) return std::nullopt;
+    const Entry* found = nullptr;
+    std::size_t of_length = 0;  // the number of paths as short as that of `found`
+    for (const Entry& image : images->second) {
+      if (!image.path.ends_with(name)) continue;
+      const std::size_t before = image.path.size() - name.size();
+      if (before > 0 && image.path[before - 1] != '/') continue;
+      if (!found || image.path.size() < found->path.size()) {
+        found = &image;
+        of_length = 0;
+      }
+      if (image.path.size() == found->path.size()) ++of_length;
+    }
+    if (of_length > 1) fail("image {}: the scene has several images of this name", name);
+    return found ? std::optional(found->number) : std::nullopt;
+  }
+
+ private:
+  struct Entry {
+    std::size_t number;
+    std::string path;
+  };
+  std::map<std::string, std::vector<Entry>> by_file_;
+};
 
 // Lens and port as text: equal for images that share them.
 std::string camera_key(const SceneImage& image) {
@@ -146,8 +166,9 @@ class Builder {
 
 TrackedScene tracks_of(const io::SceneWithCameras& scene, const io::ColmapModel& model) {
   Builder builder(scene, model);
+  const ImagesByName images(scene.scene);
   for (const io::ColmapImage& image : model.images)
-    if (const auto number = image_named(scene.scene, image.name)) builder.add(image, *number);
+    if (const auto number = images.find(image.name)) builder.add(image, *number);
   TrackedScene tracked = builder.take();
   if (tracked.numbers.empty()) fail("has no image of the scene");
   if (tracked.photographs.observations.empty()) fail("has no observations");

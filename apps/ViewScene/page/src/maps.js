@@ -73,7 +73,8 @@ export class MapView {
   centreOn(region) {
     this.region = region;
     this.centre = [region.x, region.y];
-    this.scale = Math.min(...this.size) / (6 * Math.sqrt(region.area));
+    const side = Math.max(Math.sqrt(region.area), this.layer.place[2] / this.layer.size[0]);
+    this.scale = Math.min(...this.size) / (6 * side);
     this.draw();
   }
 

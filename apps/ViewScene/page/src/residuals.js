@@ -25,13 +25,15 @@ export class Residuals {
     this.scene = scene;
     this.all = scene.residuals;
     this.photographs = [...this.all.photographs].sort((a, b) => b.rms - a.rms);
-    const worst = this.all.cameras.findIndex(camera => camera.found);
+    const size = camera => camera.found ? camera.systematic : 0;
+    const worst = this.all.cameras.reduce(
+      (most, camera, k, cameras) => size(camera) > size(cameras[most]) ? k : most, 0);
     this.picture = make("div", { id: "residual-picture" });
     this.choice = make("select", { id: "residual-choice", "aria-label": "Camera or photograph",
                                    onchange: () => this.show() }, ...this.options());
     byId("residuals").replaceChildren(...this.verdict(),
       make("h2", {}, "Mean errors over the image"), this.choice, this.picture);
-    this.choice.value = `camera ${Math.max(worst, 0)}`;
+    this.choice.value = `camera ${worst}`;
     this.show();
   }
 
@@ -59,8 +61,7 @@ export class Residuals {
   /** The judgement, in words. */
   verdict() {
     const { cameras, observations, unseen, rms, rms_freed: freed } = this.all;
-    // No pose was freed if all photographs have too few observations.
-    const posesFit = !freed || rms <= POSES * freed;
+    const posesFit = rms <= POSES * freed;
     const found = cameras.map((camera, k) => camera.found ? k : -1).filter(k => k >= 0);
     const tells = cameras.filter(camera => camera.tells);
     const parts = [table([["Error (RMS)", pixels(rms)], ["Observations", count(observations)],
