@@ -15,6 +15,7 @@
 #include "base/same_file.h"
 #include "compare/write_changes.h"
 #include "io/cameras/geo_offset.h"
+#include "io/cameras/housing.h"
 #include "io/cameras/lenses.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
@@ -92,7 +93,8 @@ void keep_inputs(const Settings& settings) {
   std::vector<fs::path> inputs{settings.before, settings.after};
   for (const fs::path& scene : {settings.scene_before, settings.scene_after}) {
     if (scene.empty()) continue;
-    inputs.insert(inputs.end(), {scene, io::lenses_beside(scene), io::geo_offset_beside(scene)});
+    inputs.insert(inputs.end(), {scene, io::housing_beside(scene), io::lenses_beside(scene),
+                                 io::geo_offset_beside(scene)});
   }
   require_no_inputs(outputs, inputs, "--output-file");
   std::error_code ignored;

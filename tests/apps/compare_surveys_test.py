@@ -251,6 +251,18 @@ class WrongInput(CompareTest):
         self.refuses_and_keeps("--output-file", "CompareSurveys", "-w", self.path("work"), "-i", "a.ply",
                                "--other", "change.difference.tif", "-o", "change")
 
+    def test_the_files_beside_a_scene_are_not_overwritten(self):
+        scene = self.path("work", "scene.mvs")
+        write(scene, mvs(["a.png", "b.png", "c.png"], rotation=(1, 0, 0, 0, -1, 0, 0, 0, -1),
+                         centres=[(x, 0.6, 2) for x in (0.7, 0.8, 0.9)], points=[]))
+        write(self.path("work", "scene.housing.json"),
+              '{"version": 1, "ports": {"main": {"type": "flat", "distance_m": 0.001, '
+              '"thickness_m": 0.001, "normal": [0, 0, 1], "n_air": 1, "n_glass": 1.5, '
+              '"n_water": 1.33}}, "default": "main"}')
+        for option in ("--scene", "--other-scene"):
+            self.refuses_and_keeps("--output-file", *self.compare(
+                "--up", "0,0,1", option, scene, "-o", "scene.housing"))
+
     def test_a_full_disk_leaves_the_old_files(self):
         self.succeeds(*self.compare())
         self.refuses_and_keeps("change.", *self.compare("--gsd", "0.001"), file_size_limit=100_000)
