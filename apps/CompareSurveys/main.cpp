@@ -80,8 +80,9 @@ std::vector<map::Photo> read_photos(const Settings& settings, const fs::path& pa
 }
 
 // A frame near the mesh of the earlier survey.
-LocalFrame frame_of_survey(const fs::path& path) {
+LocalFrame frame_of_survey(const Settings& settings, const fs::path& path) {
   if (is_ply(path)) return frame_near(io::ply_place(path).first_vertex);
+  memory_of(settings).require(io::bytes_to_read_mesh(path), "reading " + path.string());
   // Far from the origin these positions are coarse, but exact enough to choose a frame.
   const Mesh coarse = io::read_shape(path, LocalFrame{});
   if (coarse.vertices.empty()) return {};
@@ -177,7 +178,7 @@ int run(int argc, char** argv) {
   compare::ChangeFacts facts{settings.before.filename().string(),
                              settings.after.filename().string()};
   if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg, option_of);
-  const LocalFrame frame = frame_of_survey(settings.before);
+  const LocalFrame frame = frame_of_survey(settings, settings.before);
   facts.mesh_frame = frame;
   const Mesh before = read_survey(settings, settings.before, frame);
   const Mesh after = read_survey(settings, settings.after, frame);
