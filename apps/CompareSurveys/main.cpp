@@ -15,6 +15,7 @@
 #include "base/same_file.h"
 #include "compare/write_changes.h"
 #include "io/cameras/geo_offset.h"
+#include "io/cameras/housing.h"
 #include "io/cameras/lenses.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
@@ -79,8 +80,9 @@ std::vector<map::Photo> read_photos(const Settings& settings, const fs::path& pa
 }
 
 // A frame near the mesh of the earlier survey.
-LocalFrame frame_of_survey(const fs::path& path) {
+LocalFrame frame_of_survey(const Settings& settings, const fs::path& path) {
   if (is_ply(path)) return frame_near(io::ply_place(path).first_vertex);
+  memory_of(settings).require(io::bytes_to_read_mesh(path), "reading " + path.string());
   // Far from the origin these positions are coarse, but exact enough to choose a frame.
   const Mesh coarse = io::read_shape(path, LocalFrame{});
   if (coarse.vertices.empty()) return {};
@@ -92,7 +94,8 @@ void keep_inputs(const Settings& settings) {
   std::vector<fs::path> inputs{settings.before, settings.after};
   for (const fs::path& scene : {settings.scene_before, settings.scene_after}) {
     if (scene.empty()) continue;
-    inputs.insert(inputs.end(), {scene, io::lenses_beside(scene), io::geo_offset_beside(scene)});
+    inputs.insert(inputs.end(), {scene, io::housing_beside(scene), io::lenses_beside(scene),
+                                 io::geo_offset_beside(scene)});
   }
   require_no_inputs(outputs, inputs, "--output-file");
   std::error_code ignored;
@@ -175,7 +178,7 @@ int run(int argc, char** argv) {
   compare::ChangeFacts facts{settings.before.filename().string(),
                              settings.after.filename().string()};
   if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg, option_of);
-  const LocalFrame frame = frame_of_survey(settings.before);
+  const LocalFrame frame = frame_of_survey(settings, settings.before);
   facts.mesh_frame = frame;
   const Mesh before = read_survey(settings, settings.before, frame);
   const Mesh after = read_survey(settings, settings.after, frame);

@@ -16,8 +16,10 @@ struct Raw {
   double sigma_before = 0, sigma_after = 0;
 };
 
-constexpr SettingName kOptions[] = {
-    {"ground_sample_distance", "--ground-sample-distance"}, {"epsg", "--epsg"}, {"up", "--up"}};
+constexpr SettingName kOptions[] = {{"ground_sample_distance", "--ground-sample-distance"},
+                                    {"min_views", "--min-views"},
+                                    {"epsg", "--epsg"},
+                                    {"up", "--up"}};
 
 void declare_io(OptionList& list, Raw& raw, Settings& settings) {
   list.add("input-file,i", &raw.input, "mesh of the earlier survey (PLY, OBJ or GLB)")

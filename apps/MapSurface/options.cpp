@@ -80,6 +80,8 @@ void check_values(const Raw& raw, const Settings& settings) {
   check_range("ground-sample-distance", settings.pixel, 0.0, 1e6);
   check_range("epsg", settings.epsg, 0, 1 << 20);
   check_range("image-noise", settings.image_noise, 0.0, 1000.0);
+  // The square of a tiny noise is 0, and the expected errors would be NaN.
+  if (settings.image_noise > 0) check_range("image-noise", settings.image_noise, 1e-6, 1000.0);
   check_range("contours", settings.contours, 0.0, 1e6);
   check_range("ignore-mask-label", raw.ignore_mask_label, -2, 65535);
   check_range("max-memory", settings.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);

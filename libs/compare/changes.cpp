@@ -117,15 +117,21 @@ class Search {
     return false;
   }
 
+  // The median of the absolute differences of the pixels in reached_.
+  double median_difference() const {
+    std::vector<double> differences;
+    differences.reserve(reached_.size());
+    for (const Pixel& p : reached_) differences.push_back(std::abs(difference(p)));
+    return median_of(differences);
+  }
+
   // Adds the unseen pixels that are connected to the region in reached_, unless there are more of
   // them than a quarter of the region. Differences larger than twice the median of the region do
   // not belong to it.
   void add_unseen(std::uint8_t kind) {
     if (facts_.unseen.empty()) return;
     const std::size_t seen = reached_.size(), most = seen + seen / 4;
-    std::vector<double> differences;
-    for (const Pixel& p : reached_) differences.push_back(std::abs(difference(p)));
-    const double limit = 2 * median_of(differences);
+    const double limit = 2 * median_difference();
     for (std::size_t i = 0; i < reached_.size() && reached_.size() <= most; ++i) {
       const Pixel inner = reached_[i];
       for_neighbours(inner, [&](const Pixel& p) {

@@ -153,6 +153,19 @@ cv::Mat1b find_unseen(const Mesh& before, const Mesh& after, const map::MapFrame
   return unseen;
 }
 
+// Error if the photographs see no place that both surveys have.
+void require_seen_places(const cv::Mat1f& difference, const cv::Mat1b& unseen,
+                         const CompareOptions& options) {
+  if (unseen.empty()) return;
+  for (int y = 0; y < difference.rows; ++y)
+    for (int x = 0; x < difference.cols; ++x)
+      if (!std::isnan(difference(y, x)) && unseen(y, x) == 0) return;
+  fail(
+      "{} {}: no place of both surveys is seen by so many photographs; are the scenes those of "
+      "the meshes?",
+      options.name_of("min_views"), options.photos.least);
+}
+
 // Estimates the noise, or takes the given one.
 Noise noise_of(const cv::Mat1f& difference, const cv::Mat1b& unseen, const cv::Mat1f& steepness,
                const CompareOptions& options, double pixel) {
@@ -251,6 +264,7 @@ Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::Map
   Maps maps = subtract(result);
   if (std::ranges::all_of(result.difference, [](float value) { return std::isnan(value); }))
     fail("{}: the surveys do not overlap", options.name_after.string());
+  require_seen_places(result.difference, unseen, options);
   result.noise = noise_of(result.difference, unseen, maps.steepness, options, result.grid.pixel);
   fill_sigma(maps, result);
   maps = {};

@@ -38,7 +38,8 @@ struct CompareOptions {
   SurveyPhotos photos = {};
   // The memory that may be used. The need is checked before the maps are made.
   MemoryAllowance memory = {};
-  SettingNames name_of = own_name;  // for the field `pixel`, "ground_sample_distance"
+  // For the fields `pixel`, "ground_sample_distance", and `photos.least`, "min_views".
+  SettingNames name_of = own_name;
   // The names of the surveys in errors.
   std::filesystem::path name_before = "the earlier survey", name_after = "the later survey";
   // Returns the ProgressSink for a stage with the given name. The stages "Registration"
@@ -48,7 +49,7 @@ struct CompareOptions {
 };
 
 // The maps have one value for each pixel of `grid`. NaN: not compared, because one of the surveys
-// has no surface there.
+// has no surface there, or because too few photographs see the place.
 struct Comparison {
   map::MapFrame frame;            // of the earlier survey
   map::MapGrid grid;              // the common part of the smallest grids around both surveys
@@ -85,8 +86,8 @@ Eigen::Vector3d upward_direction(const Mesh& mesh);
 //
 // Error if a mesh is none (check_mesh()), if the surveys do not overlap, if they cannot be
 // aligned (register_surveys()); these two name the later survey. Error if the map has too many
-// pixels (grid_around()), and if the memory does not suffice. The result does not depend on the
-// number of threads.
+// pixels (grid_around()), if the photographs see no place of both surveys, and if the memory does
+// not suffice. The result does not depend on the number of threads.
 Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
                            const CompareOptions& options);
 

@@ -10,6 +10,7 @@ import random
 from geotiff import read_geotiff
 from programs import ProgramTest, contents, files_below, grey_png, main, read, run, write
 from texture_mesh_test import mesh_ply
+from tiny_scene import mvs
 
 OUTPUTS = {f"work/change.{end}" for end in ("difference.tif", "significant.tif", "sigma.tif", "json", "jpg")}
 CELLS, SPACING = (80, 60), 0.02
@@ -142,6 +143,25 @@ class Outputs(CompareTest):
         self.assertAlmostEqual(self.report()["noise"]["sigma"], 0.05, 9)
         self.assertEqual(self.report()["area_changed"], 0)
 
+    def test_places_that_too_few_photographs_see_are_not_compared(self):
+        # Three cameras at a height of 1.2 m see x up to 1.1 m, with the place of the block that
+        # went, and without that of the block that came.
+        scene = self.path("work", "scene.mvs")
+        write(scene, mvs(["a.png", "b.png", "c.png"], rotation=(1, 0, 0, 0, -1, 0, 0, 0, -1),
+                         centres=[(x, 0.4, 1.2) for x in (0.35, 0.4, 0.45)], points=[]))
+        write(self.after, mesh_ply(*survey(after, 2)))
+        for option in ("--scene", "--other-scene"):
+            self.succeeds(*self.compare("--up", "0,0,1", option, scene))
+            report, classes = self.report(), self.map("significant")
+            volume = volume_of_block(0.3, 0.3)
+            self.assertAlmostEqual(report["gone"]["volume"], volume, delta=0.05 * volume)
+            self.assertEqual(report["came"]["regions"], 0)
+            seen = sum(kind != 255 for row in classes.rows for kind in row) * classes.pixel ** 2
+            self.assertAlmostEqual(report["area_compared"], seen, 6)
+            self.assertLess(seen, 0.8 * 1.6 * 1.2)
+        self.refuses_and_keeps("--min-views 4: no place of both surveys is seen", *self.compare(
+            "--up", "0,0,1", "--scene", scene, "--min-views", "4"))
+
     def test_any_number_of_threads_gives_the_same_bytes(self):
         found = []
         for threads in (1, 2):
@@ -230,6 +250,18 @@ class WrongInput(CompareTest):
         write(self.path("work", "change.difference.tif"), read(self.after))
         self.refuses_and_keeps("--output-file", "CompareSurveys", "-w", self.path("work"), "-i", "a.ply",
                                "--other", "change.difference.tif", "-o", "change")
+
+    def test_the_files_beside_a_scene_are_not_overwritten(self):
+        scene = self.path("work", "scene.mvs")
+        write(scene, mvs(["a.png", "b.png", "c.png"], rotation=(1, 0, 0, 0, -1, 0, 0, 0, -1),
+                         centres=[(x, 0.6, 2) for x in (0.7, 0.8, 0.9)], points=[]))
+        write(self.path("work", "scene.housing.json"),
+              '{"version": 1, "ports": {"main": {"type": "flat", "distance_m": 0.001, '
+              '"thickness_m": 0.001, "normal": [0, 0, 1], "n_air": 1, "n_glass": 1.5, '
+              '"n_water": 1.33}}, "default": "main"}')
+        for option in ("--scene", "--other-scene"):
+            self.refuses_and_keeps("--output-file", *self.compare(
+                "--up", "0,0,1", option, scene, "-o", "scene.housing"))
 
     def test_a_full_disk_leaves_the_old_files(self):
         self.succeeds(*self.compare())

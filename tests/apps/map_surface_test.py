@@ -154,6 +154,7 @@ class WrongInput(MapTest):
                 ("--gsd: is the same as --ground-sample-distance", "--gsd", "0.1",
                  "--ground-sample-distance", "0.1"),
                 ("--image-noise -1: must be from 0", "--image-noise", "-1"),
+                ("--image-noise 1e-200: must be from 1e-06", "--image-noise", "1e-200"),
                 ("--up 0,0: must be three numbers X,Y,Z", "--up", "0,0"),
                 ("--up 0,0,x: must be three numbers X,Y,Z", "--up", "0,0,x"),
                 ("--up 0,0,0: is no direction", "--up", "0,0,0"),

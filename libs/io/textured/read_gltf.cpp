@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 #include <new>
+#include <set>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -65,10 +66,16 @@ class GlbReader {
   GlbReader(const std::string& bytes, std::string file, bool textured)
       : file_(std::move(file)), textured_(textured), model_(parsed(bytes, file_)) {}
 
-  std::vector<ImageHeader> image_headers() const {
+  // Other images are not read, and may have a format that the program does not know.
+  std::vector<ImageHeader> color_headers() const {
+    std::set<int> images;
+    for (const tinygltf::Material& material : model_.materials)
+      if (const int texture = material.pbrMetallicRoughness.baseColorTexture.index; texture >= 0)
+        images.insert(item(model_.textures, texture, "texture").source);
     std::vector<ImageHeader> headers;
-    for (std::size_t k = 0; k < model_.images.size(); ++k) {
-      const std::span<const unsigned char> bytes = bytes_of(model_.images[k].bufferView);
+    for (const int k : images) {
+      const std::span<const unsigned char> bytes =
+          bytes_of(item(model_.images, k, "image").bufferView);
       headers.push_back(
           image_header_of({bytes.begin(), bytes.end()}, fmt::format("{}: image {}", file_, k)));
     }
@@ -246,8 +253,8 @@ class GlbReader {
 
 }  // namespace
 
-std::vector<ImageHeader> image_headers_of_glb(const fs::path& path) {
-  return GlbReader(read_file(path), path.string(), true).image_headers();
+std::vector<ImageHeader> color_headers_of_glb(const fs::path& path) {
+  return GlbReader(read_file(path), path.string(), true).color_headers();
 }
 
 TexturedMesh read_textured_glb(const fs::path& path, const std::optional<LocalFrame>& frame) {

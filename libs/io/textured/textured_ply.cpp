@@ -140,13 +140,14 @@ TextureFiles texture_files_of(const std::filesystem::path& path) {
 std::uint64_t bytes_to_read_textures(const std::filesystem::path& path) {
   std::vector<ImageHeader> headers;
   if (lower_extension(path) == ".glb")
-    headers = image_headers_of_glb(path);
+    headers = color_headers_of_glb(path);
   else
     for (const std::filesystem::path& texture : texture_files_of(path).textures)
       headers.push_back(read_image_header(texture));
   std::uint64_t bytes = 0, largest = 0;
   for (const ImageHeader& header : headers) {
-    bytes += 3 * static_cast<std::uint64_t>(header.size.area());
+    bytes += std::uint64_t{3} * static_cast<std::uint64_t>(header.size.width) *
+             static_cast<std::uint64_t>(header.size.height);
     largest = std::max(largest, bytes_needed(header));
   }
   return bytes + largest;

@@ -37,8 +37,9 @@ std::vector<Eigen::Vector3f> placed_in(const std::optional<LocalFrame>& frame,
 // texture_files_of() an OBJ.
 TextureFiles texture_files_of_obj(const std::filesystem::path& path);
 
-// The headers of all images of a GLB. Errors as for read_textured_glb().
-std::vector<ImageHeader> image_headers_of_glb(const std::filesystem::path& path);
+// The headers of the images that are the colours of a GLB's materials. Errors as for
+// read_textured_glb().
+std::vector<ImageHeader> color_headers_of_glb(const std::filesystem::path& path);
 
 // read_shape() for OBJ and GLB.
 Mesh read_shape_obj(const std::filesystem::path& path, const std::optional<LocalFrame>& frame);
