@@ -166,6 +166,13 @@ void report(const compare::Comparison& comparison) {
   };
   line("came", changes.came);
   line("gone", changes.gone);
+  if (comparison.area_unseen > 0)
+    log_info("{:.4g} m^2 were not compared, because too few photographs see them",
+             comparison.area_unseen);
+  if (comparison.area_unseen > changes.area_compared)
+    log_warning(
+        "--scene, --other-scene: less than half of the common ground is seen by enough "
+        "photographs: are the scenes those of the meshes?");
   warn_of_large_changes(comparison);
 }
 

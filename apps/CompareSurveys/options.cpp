@@ -59,7 +59,7 @@ void declare_comparison(OptionList& list, Raw& raw, Settings& settings) {
       .add("sigma-after", &raw.sigma_after, "standard deviation of the later surface [m]")
       .add_with_default("min-pixels", &changes.least_pixels,
                         "smallest number of pixels with a significant difference in a region of "
-                        "change")
+                        "change; more if pixels are narrower than the distance of the vertices")
       .add_with_default("min-views", &settings.compare.photos.least,
                         "smallest number of photographs that see a place, with --scene or "
                         "--other-scene");

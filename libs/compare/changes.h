@@ -17,10 +17,10 @@ inline constexpr std::uint8_t kUnchanged = 0, kGone = 1, kCame = 2, kNotCompared
 struct ChangeOptions {
   // A region of change consists of adjacent pixels whose differences have the same sign and are
   // larger than `weak` standard deviations. At least `least_pixels` of them are larger than
-  // `strong` standard deviations. Pixels that touch at a corner are adjacent. These
-  // are pixels that both surveys see. Then the unseen pixels are added that continue the region, if
-  // they are no more than a quarter of its seen pixels, and
-  // whose differences are at most twice the median of these. Other unseen pixels are not compared.
+  // `strong` standard deviations. Pixels that touch at a corner are adjacent. These are pixels that
+  // both surveys see. Then unseen pixels are added that continue the region and whose differences
+  // are at most twice the median of the region, if they are at most a quarter of its seen pixels.
+  // Other unseen pixels are not compared.
   double strong = 3, weak = 1.5;
   int least_pixels = 8;
   // The volume of a region includes the differences, of either sign, of the pixels around it that

@@ -200,6 +200,22 @@ void fill_sigma(const Maps& maps, Comparison& comparison) {
   comparison.registration_sigma = median_of(parts);
 }
 
+// The area [m^2] that both surveys have, but that is not compared because of `unseen`.
+double area_left_out(const cv::Mat1b& unseen, const Comparison& comparison) {
+  std::size_t pixels = 0;
+  for (int y = 0; y < unseen.rows; ++y)
+    for (int x = 0; x < unseen.cols; ++x)
+      pixels += unseen(y, x) != 0 && !std::isnan(comparison.difference(y, x)) &&
+                comparison.changes.classes(y, x) == kNotCompared;
+  return static_cast<double>(pixels) * comparison.grid.pixel * comparison.grid.pixel;
+}
+
+// Neighbouring pixels that are narrower than the distance of the vertices are not independent.
+int least_pixels(int least, double vertex_distance, double pixel) {
+  const double finer = std::max(1.0, vertex_distance / pixel);
+  return static_cast<int>(std::min(std::round(least * finer * finer), 1e9));
+}
+
 ProgressSink sink_of(const CompareOptions& options, const char* stage) {
   return options.progress ? options.progress(stage) : ProgressSink{};
 }
@@ -214,6 +230,8 @@ Comparison placed(const Mesh& before, const Mesh& after, const map::MapFrame& fr
                            ? options.pixel
                            : map::rounded_width(std::max(distance_before, distance_after));
   Comparison result;
+  result.least_pixels =
+      least_pixels(options.changes.least_pixels, std::max(distance_before, distance_after), pixel);
   result.frame = frame;
   result.base = frame.origin.z();
   const map::MapGrid of_before = naming(
@@ -268,11 +286,14 @@ Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::Map
   result.noise = noise_of(result.difference, unseen, maps.steepness, options, result.grid.pixel);
   fill_sigma(maps, result);
   maps = {};
-  result.changes = find_changes(
-      result.difference, result.sigma,
-      {result.grid, result.registration, result.noise.correlation, unseen}, options.changes);
+  ChangeOptions changes = options.changes;
+  changes.least_pixels = result.least_pixels;
+  result.changes =
+      find_changes(result.difference, result.sigma,
+                   {result.grid, result.registration, result.noise.correlation, unseen}, changes);
   cv::Mat1b left_out;
   cv::compare(result.changes.classes, kNotCompared, left_out, cv::CMP_EQ);
+  result.area_unseen = area_left_out(unseen, result);
   for (cv::Mat1f* map : {&result.difference, &result.sigma})
     map->setTo(std::numeric_limits<float>::quiet_NaN(), left_out);
   return result;

@@ -61,6 +61,8 @@ struct Comparison {
   Registration registration;
   Noise noise;
   Changes changes;
+  int least_pixels = 0;    // of a region, see compare_surveys()
+  double area_unseen = 0;  // not compared because too few photographs see it [m^2]
 };
 
 // The square root of the area of the mesh per vertex [m]. Error for a mesh without area.
@@ -83,6 +85,9 @@ Eigen::Vector3d upward_direction(const Mesh& mesh);
 // meshes with vertices at other places cut off other parts of edges and of furrows. The bend that
 // noise alone gives is subtracted first. The third one is the variance by the uncertain
 // registration.
+//
+// If pixels are narrower than vertex_distance() of the coarser mesh, a region needs as many more
+// pixels (ChangeOptions::least_pixels), because neighbouring pixels then show the same noise.
 //
 // Error if a mesh is none (check_mesh()), if the surveys do not overlap, if they cannot be
 // aligned (register_surveys()); these two name the later survey. Error if the map has too many

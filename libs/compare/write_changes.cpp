@@ -109,6 +109,7 @@ Json to_json(const Comparison& comparison, const ChangeFacts& facts) {
               {"top", grid.top},
               {"up", list_of(comparison.frame.axes.row(2).transpose())}}},
             {"area_compared", changes.area_compared},
+            {"area_unseen", comparison.area_unseen},
             {"area_changed", changes.came.area + changes.gone.area},
             {"came", json_of(changes.came, came)},
             {"gone", json_of(changes.gone, changes.regions.size() - came)},

@@ -66,7 +66,8 @@ struct Preset {
 //   that most of the ground is seen by exactly two views.
 //
 // "NAME-hazy" is the preset NAME in haze that leaves a seventh of the contrast. Throws an Error for
-// another name, for `changed` with another preset than "reef", for a number of views outside [0,
+// another name, for `changed` with another preset than "reef" and for a reef without a boulder that
+// can be moved (change_survey()), for a number of views outside [0,
 // 100000], for a scale, relief or coarseness outside [0.01, 100], and for a width, height or field
 // of view that make_lens() refuses.
 Preset make_preset(const PresetOptions& options);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "simulate/preset_parts.h"
 
@@ -100,18 +101,24 @@ double covered(const Shape& shape, const std::vector<Footprint>& others) {
   return sum;
 }
 
+// The distance [m] of a body from the ground that many views see.
+double outside(const Blob& blob) {
+  return (blob.centre.head<2>().cwiseAbs() - 1.2 * kSeen).cwiseMax(0).norm();
+}
+
 // The boulder among the first `boulders` blobs that is well seen, free and neither small nor large.
+// Error if none of them is on the ground that many views see.
 std::size_t choose_boulder(const Terrain& terrain, int boulders) {
   const auto score = [&](std::size_t i) {
     const Blob& blob = terrain.blobs[i];
-    const Footprint circle = footprint(blob);
-    const Eigen::Vector2d outside = (blob.centre.head<2>().cwiseAbs() - 1.2 * kSeen).cwiseMax(0);
-    return -4 * covered(circle, footprints(terrain, i)) - 10 * outside.norm() -
+    return -4 * covered(footprint(blob), footprints(terrain, i)) - 40 * outside(blob) -
            2 * std::abs(blob.radii.maxCoeff() - kIdealRadius);
   };
   std::size_t best = 0;
   for (std::size_t i = 1; i < static_cast<std::size_t>(boulders); ++i)
     if (score(i) > score(best)) best = i;
+  if (outside(terrain.blobs[best]) > 0)
+    fail("the survey shows no boulder that can be moved; choose another seed");
   return best;
 }
 

@@ -15,7 +15,7 @@ namespace axial::simulate {
 // - Everything within a patch of 1 m x 1 m grows upwards by 20 mm (Terrain::growth).
 // The boulder, its new place and the patch are near the middle, where many views overlap, and as
 // far from each other and from other large bodies as possible. They follow from the terrain, and
-// the views from `seed`.
+// the views from `seed`. Error if none of these blobs is near the middle.
 // Precondition: the terrain has `boulders` blobs, and the views are those of add_two_rows().
 void change_survey(Preset& preset, int boulders, std::uint32_t seed);
 

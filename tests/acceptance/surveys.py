@@ -8,8 +8,9 @@ from points import BASE, densified, point
 from support import runs
 from support.runs import BIN, PROGRAMS, measured
 
-# The rules of CompareSurveys were chosen with the seeds 41, 42 and 43.
-SEEDS = (44, 45, 46)
+# The rules of CompareSurveys were chosen with the seeds 41, 42 and 43. In the reef of seed 46, the
+# views see no boulder that could move.
+SEEDS = (44, 45, 47)
 VOLUME, FALSE = 5, 1  # at most [%]
 
 
@@ -66,8 +67,9 @@ def judged(work, seed, align):
     false = 100 * wrong / (area - changed)
     text = ", ".join(f"{name} {value:+.1f} %" for name, value in deviations.items())
     hidden = 100 * hidden_came / truth["came"], 100 * hidden_gone / truth["gone"]
-    return (f"{seed} {align}: {text}; not compared {hidden[0]:.1f} % of what came, {hidden[1]:.1f} % "
-            f"of what went; false {false:.2f} % of {area - changed:.1f} m2",
+    whole = [100 * (report[kind]["volume"] / truth[kind] - 1) for kind in ("came", "gone")]
+    return (f"{seed} {align}: {text}; of the whole truth: came {whole[0]:+.1f} %, gone {whole[1]:+.1f} %, "
+            f"of which {hidden[0]:.1f} and {hidden[1]:.1f} % were not compared; false {false:.2f} % of {area - changed:.1f} m2",
             max(map(abs, deviations.values())) <= VOLUME and false <= FALSE)
 
 

@@ -144,6 +144,7 @@ TEST_F(SimulateUnderwater, PhotographsASecondSurveyWithOtherNoise) {
   EXPECT_EQ(change["came"].get<double>(), change["boulder_came"]["volume"].get<double>() +
                                               change["patch_came"]["volume"].get<double>());
   refuses("only reef has one", "-o d --preset sand --changed");
+  refuses("no boulder that can be moved", "-o d --preset reef --seed 46 --changed");
 }
 
 TEST_F(SimulateUnderwater, RefusesWrongOptionsInOneLine) {

@@ -2,10 +2,12 @@
 // Compares the stated change of a second survey with vertical rays at the meshes of both surveys.
 #include "simulate/survey_change.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
 #include "simulate/ray_scene.h"
@@ -98,9 +100,18 @@ TEST(SurveyChange, GrowsWithTheSceneAndItsRelief) {
 }
 
 TEST(SurveyChange, IsNearTheMiddleAndItsPartsAreApart) {
+  int without_boulder = 0;
   for (std::uint32_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);
-    const Preset after = reef(seed, true);
+    std::optional<Preset> changed;
+    try {
+      changed = reef(seed, true);
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), ::testing::HasSubstr("choose another seed"));
+      ++without_boulder;
+      continue;
+    }
+    const Preset& after = *changed;
     const Terrain& terrain = after.terrain;
     const Blob& boulder = terrain.blobs[after.moved->blob];
     const Eigen::Vector2d from = after.moved->from.head<2>(), to = boulder.centre.head<2>();
@@ -110,11 +121,12 @@ TEST(SurveyChange, IsNearTheMiddleAndItsPartsAreApart) {
       const Eigen::Vector2d beyond =
           ((place - terrain.growth.centre).cwiseAbs() - terrain.growth.half).cwiseMax(0);
       EXPECT_GT(beyond.norm(), radius);
-      EXPECT_LT(place.cwiseAbs().x(), 2.0);
-      EXPECT_LT(place.cwiseAbs().y(), 1.4);
+      EXPECT_LT(place.cwiseAbs().x(), 1.6);
+      EXPECT_LT(place.cwiseAbs().y(), 1.0);
     }
     EXPECT_GT(radius, 0.12);
   }
+  EXPECT_LT(without_boulder, 20);
 }
 
 TEST(SurveyChange, LeavesEverythingElseAndTakesOtherViews) {
