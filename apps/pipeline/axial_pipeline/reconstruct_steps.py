@@ -32,7 +32,9 @@ def colmap_steps(given, out):
 
 
 def existing_files(words):
-    return [word for word in words if pathlib.Path(word).exists()]
+    """The files and folders that `words` of a command name, also as --option=path."""
+    paths = [word.partition("=")[2] if word.startswith("--") else word for word in words]
+    return [path for path in paths if path and pathlib.Path(path).exists()]
 
 
 def refine_options(given):
