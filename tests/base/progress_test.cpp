@@ -87,7 +87,7 @@ TEST(Progress, RewritesOneLineOnATerminal) {
   const std::string text = on_terminal(LogLevel::debug);
   EXPECT_THAT(text, HasSubstr("\rDone things 1/4 (25%, 0s, 0s left)\033[K"));
   EXPECT_THAT(text, ContainsRegex("\r\033\\[K.*\\[Test\\] Done things 4/4 \\(100%, 0.0s\\)"));
-  EXPECT_THAT(text, ContainsRegex("left\\)\033\\[K\r\033\\[K[0-9:]+ \\[Test\\] careful"));
+  EXPECT_THAT(text, ContainsRegex("left\\)\033\\[K\r\033\\[K[0-9:]+ \\[Test\\] warning: careful"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text;
 }
 
@@ -107,7 +107,7 @@ TEST(Progress, IsSilentWhereTheLogIs) {
     EXPECT_THAT(ends, HasSubstr("Done things 4/4"));
     EXPECT_THAT(ends, Not(HasSubstr("1/4")));
     EXPECT_THAT(output(LogLevel::warning),
-                MatchesRegex("(\r\033\\[K)?[0-9:]+ \\[Test\\] careful\r?\n"));
+                MatchesRegex("(\r\033\\[K)?[0-9:]+ \\[Test\\] warning: careful\r?\n"));
   }
 }
 
