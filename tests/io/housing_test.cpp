@@ -193,7 +193,8 @@ TEST_F(HousingTest, SurvivesWrongInput) {
   test::expect_damage_survived(file_, kLake, reader);
   const std::string deep(100000, '[');
   EXPECT_THAT(error_of([&] { read(deep); }), HasSubstr("JSON"));
-  EXPECT_THAT(error_of([&] { read(deep + std::string(100000, ']')); }), HasSubstr("lie inside one another"));
+  EXPECT_THAT(error_of([&] { read(deep + std::string(100000, ']')); }),
+              HasSubstr("lie inside one another"));
 }
 
 }  // namespace
