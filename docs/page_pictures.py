@@ -103,7 +103,7 @@ def main():
         if picture:
             (given.output / f"{name}.jpg").write_bytes(picture)
         else:
-            print(f"{name}: the page does not have what it shows")
+            print(f"{name}: the page lacks the part that this picture shows")
 
 
 if __name__ == "__main__":

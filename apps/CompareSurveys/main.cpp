@@ -138,7 +138,7 @@ void report_registration(const compare::Comparison& comparison) {
   if (!r.converged) log_warning("--align icp: did not converge after {} steps", r.iterations);
 }
 
-// If most of the map changed, what changed looks like noise.
+// Warns if most of the map changed: the estimated noise then contains the changes.
 void warn_of_large_changes(const compare::Comparison& comparison) {
   constexpr double kMuch = 5;
   const compare::Changes& changes = comparison.changes;

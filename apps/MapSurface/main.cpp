@@ -147,7 +147,7 @@ PlacedMap place_map(const Settings& settings, const Mesh& mesh, const LocalFrame
   return map;
 }
 
-// What the map shows of the views of a face.
+// The values of each face of the mesh that the maps show.
 struct FaceFacts {
   std::vector<std::uint16_t> views;  // the number of views that see each face
   std::vector<float> errors;         // MapContent::errors

@@ -27,7 +27,7 @@ void write_sparse_model(const std::filesystem::path& folder, const simulate::Len
 // surface.
 void write_port(const std::filesystem::path& file, const simulate::Preset& preset);
 
-// Writes what changed before a second survey: the volumes and areas of `change`, their sum, and the
+// Writes the change before a second survey: the volumes and areas of `change`, their sum, and the
 // places of the boulder and of the patch in `preset` [world, m].
 void write_change(const std::filesystem::path& file, const simulate::Preset& preset,
                   const simulate::ChangeTruth& change);

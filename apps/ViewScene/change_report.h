@@ -6,9 +6,10 @@
 
 namespace axial::apps {
 
-// What the page shows of the report of CompareSurveys (docs/compare.md): "before", "after",
-// "area_compared", "came", "gone", "net", and the first regions with "of_regions", their number in
-// the report. Error that names the file and the field if the report is missing or malformed.
+// The part of the report of CompareSurveys (docs/compare.md) that the page shows: "before",
+// "after", "area_compared", "came", "gone", "net", and the first regions with "of_regions", their
+// number in the report. Error that names the file and the field if the report is missing or
+// malformed.
 nlohmann::ordered_json change_report(const std::filesystem::path& file);
 
 }  // namespace axial::apps

@@ -174,7 +174,7 @@ Json write_cameras(const Contents& contents, const Options& options, const fs::p
   return cameras;
 }
 
-// What the page shows of the maps, of the run and of the depth maps.
+// Adds the maps, the run and the depth maps to `data`.
 void add_survey(const Contents& contents, const Options& options, const fs::path& staging,
                 Json& data) {
   if (!options.run.empty()) data["run"] = run_report(options.run);

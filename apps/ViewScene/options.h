@@ -18,7 +18,7 @@ struct Options {
   std::filesystem::path report;       // the folder to write
   MapOptions maps;
   DepthMapOptions depth_maps;
-  std::filesystem::path run;        // what `reconstruct` says about its run; empty: none
+  std::filesystem::path run;        // file of a run of `reconstruct`; empty: none
   std::filesystem::path sfm_model;  // folder of a COLMAP model, for residuals; empty: none
   std::filesystem::path truth;      // true mesh, for distances of the cloud; empty: none
   std::uint64_t max_points = 10'000'000;

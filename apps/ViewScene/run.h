@@ -6,7 +6,7 @@
 
 namespace axial::apps {
 
-// What the page shows of a run of `reconstruct`, from the file that `reconstruct` wrote
+// The run of `reconstruct` for the page, from the file that `reconstruct` wrote
 // (docs/view.md): "command", a list of words, and "steps", a list of objects with "name",
 // "command", "seconds", "version" (a text or null) and "warnings", a list of "text" and "times".
 // Error that names the file and the field if the file is missing or malformed.

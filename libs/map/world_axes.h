@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a map lies in the world: what the files of maps say about their axes.
+// The axes and the origin of a map in the world, as the files of the map state them.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Removes from vectors over observations what changes of poses and points explain.
+// Removes the part of vectors over observations that changes of poses and points explain.
 #pragma once
 
 #include <span>

@@ -28,7 +28,7 @@ struct PresetOptions {
   bool changed = false;
 };
 
-// What change_survey() moved.
+// The boulder that change_survey() moved.
 struct MovedBoulder {
   std::size_t blob = 0;  // index into Terrain::blobs; the blob is at its new place
   Eigen::Vector3d from = Eigen::Vector3d::Zero();  // the centre at the old place [world, m]

@@ -25,7 +25,7 @@ constexpr double kGrown = 0.020, kHalfPatch = 0.5, kPatchEdge = 0.06;  // [m]
 const Eigen::Vector2d kSeen(1.3, 0.8);
 constexpr double kIdealRadius = 0.30;  // of the boulder [m]
 
-// What is on the ground within a circle.
+// The circle on the ground that a body covers.
 struct Footprint {
   Eigen::Vector2d centre;
   double radius = 0;
