@@ -22,7 +22,7 @@ struct Evaluated {
   std::span<const Eigen::Vector3f> points;
   const evaluate::PointUncertainty& uncertainty;  // of `points`
   const Mesh& truth;
-  const evaluate::Surface& surface;  // made from `truth`
+  const geometry::Surface& surface;  // made from `truth`
   std::span<const evaluate::View> views;
   const evaluate::CloudEvaluation& whole;  // the evaluation of all points
 };

@@ -42,7 +42,7 @@ Similarity align_by_centres(const Options& options, const Models& models,
 }
 
 Similarity align_by_icp(const Options& options, const Input& input,
-                        const evaluate::Surface& surface, nlohmann::ordered_json& report) {
+                        const geometry::Surface& surface, nlohmann::ordered_json& report) {
   evaluate::IcpOptions settings;
   settings.seed = options.seed;
   const auto result = naming(options.input, [&] {
@@ -84,7 +84,7 @@ struct Alignment {
 };
 
 // Moves the input from its own frame to the truth's frame.
-Alignment align(const Options& options, Input& input, const evaluate::Surface& surface,
+Alignment align(const Options& options, Input& input, const geometry::Surface& surface,
                 const Models& models) {
   const Frames& frames = models.frames;
   nlohmann::ordered_json report{{"method", options.align}};
@@ -179,7 +179,7 @@ struct Measured {
 
 // Measures the aligned input. `colored` gets the points that count, without colours.
 Measured measure(const Options& options, Input& input, const Mesh& truth,
-                 const evaluate::Surface& surface, std::span<const evaluate::View> views,
+                 const geometry::Surface& surface, std::span<const evaluate::View> views,
                  PointCloud& colored) {
   const evaluate::CloudOptions settings = settings_of(options);
   return naming(options.input, [&]() -> Measured {
@@ -199,11 +199,11 @@ Measured measure(const Options& options, Input& input, const Mesh& truth,
 // The colours of the vertices of the mesh by their distances to the truth. Writes the mesh with
 // these colours. Empty for a cloud, and if nothing needs the colours.
 std::vector<Rgb> vertex_errors(const Options& options, const Input& input,
-                               const evaluate::Surface& surface, const LocalFrame& frame) {
+                               const geometry::Surface& surface, const LocalFrame& frame) {
   const bool is_needed = !options.error_mesh.empty() || !options.rendered_views.empty();
   if (!input.mesh || !is_needed) return {};
   std::vector<Rgb> colors = evaluate::error_colors(
-      evaluate::distances_to(surface, input.mesh->vertices), options.color_max);
+      geometry::distances_to(surface, input.mesh->vertices), options.color_max);
   if (!options.error_mesh.empty())
     io::write_mesh_ply(options.error_mesh, {input.mesh->vertices, colors, input.mesh->faces},
                        {frame, false});
@@ -233,7 +233,7 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   const Models models = read_models(options);
   Input input = read_input(options, models.frames.input);
   const Mesh truth = io::read_mesh_ply(options.truth, models.frames.truth);
-  const evaluate::Surface surface = naming(options.truth, [&] { return evaluate::Surface(truth); });
+  const geometry::Surface surface = naming(options.truth, [&] { return geometry::Surface(truth); });
   naming(options.truth,
          [&] { evaluate::sample_surface(truth, 1, options.seed); });  // needs an area
   const std::vector<evaluate::View> views = read_views(options, models);

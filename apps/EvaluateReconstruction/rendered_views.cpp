@@ -92,8 +92,8 @@ double share(const cv::Mat1b& mask) {
 struct Renderer {
   const Options& options;
   const Input& input;
-  const evaluate::Surface& mesh;
-  const evaluate::Surface* truth;
+  const geometry::Surface& mesh;
+  const geometry::Surface* truth;
   std::span<const Rgb> error_colors;
 
   evaluate::RenderedView rendered(const evaluate::Coloring& coloring, const View& view) const {
@@ -175,10 +175,10 @@ std::vector<RenderTask> plan_rendering(const Options& options, const Input& inpu
 }
 
 nlohmann::ordered_json render(const Options& options, const Input& input,
-                              std::span<const RenderTask> tasks, const evaluate::Surface* truth,
+                              std::span<const RenderTask> tasks, const geometry::Surface* truth,
                               std::span<const Rgb> error_colors) {
-  const evaluate::Surface mesh =
-      naming(options.input, [&] { return evaluate::Surface(*input.mesh); });
+  const geometry::Surface mesh =
+      naming(options.input, [&] { return geometry::Surface(*input.mesh); });
   const Renderer renderer{options, input, mesh, truth, error_colors};
   std::vector<evaluate::ViewReport> views;
   for (const RenderTask& task : tasks) views.push_back(renderer.view_report(task));

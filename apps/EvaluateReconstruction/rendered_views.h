@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "evaluate/surface.h"
 #include "evaluate/views.h"
+#include "geometry/surface.h"
 #include "inputs.h"
 
 namespace axial::apps {
@@ -32,7 +32,7 @@ std::vector<RenderTask> plan_rendering(const Options& options, const Input& inpu
 // file. `truth` is null or the true surface; then only pixels that the truth covers are compared.
 // `error_colors`: colours of the vertices; empty without truth.
 nlohmann::ordered_json render(const Options& options, const Input& input,
-                              std::span<const RenderTask> tasks, const evaluate::Surface* truth,
+                              std::span<const RenderTask> tasks, const geometry::Surface* truth,
                               std::span<const Rgb> error_colors);
 
 }  // namespace axial::apps

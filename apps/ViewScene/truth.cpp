@@ -3,7 +3,7 @@
 
 #include "base/log.h"
 #include "base/naming.h"
-#include "evaluate/surface.h"
+#include "geometry/surface.h"
 #include "io/openmvs/point_source.h"
 
 namespace axial::apps {
@@ -11,9 +11,9 @@ namespace axial::apps {
 std::vector<float> distances_to_truth(const LocalFrame& frame, const PointCloud& cloud,
                                       const std::filesystem::path& truth) {
   const Mesh mesh = io::read_mesh_of_scene(frame, truth);
-  const evaluate::Surface surface = naming(truth, [&] { return evaluate::Surface(mesh); });
+  const geometry::Surface surface = naming(truth, [&] { return geometry::Surface(mesh); });
   log_info("{}: {} faces", truth.string(), mesh.faces.size());
-  return evaluate::distances_to(surface, cloud.positions);
+  return geometry::distances_to(surface, cloud.positions);
 }
 
 }  // namespace axial::apps

@@ -23,7 +23,7 @@ namespace {
 // and a list of the pixels of one region, which grows by doubling.
 constexpr std::uint64_t kBytesPerPixel = 4 + 4 + 4 + 1 + 1 + 24;
 
-// For each face of the earlier survey, the copy and the hierarchy of evaluate::Surface.
+// For each face of the earlier survey, the copy and the hierarchy of geometry::Surface.
 constexpr std::uint64_t kRegistrationBytes = 160;
 
 // The standard deviation of a height is this part of the bend of the surface: meshes with vertices

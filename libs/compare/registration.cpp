@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "compare/height_map.h"
 #include "evaluate/icp.h"
-#include "evaluate/surface.h"
+#include "geometry/surface.h"
 
 namespace axial::compare {
 namespace {
@@ -182,7 +182,7 @@ RigidMotion first_motion(const Mesh& before, const Mesh& after, const map::MapFr
         "the later survey has only {} vertices over the earlier one to align by, and {} are needed",
         points.size(), kLeastSamples);
   const Similarity found =
-      evaluate::refine_rigid(points, evaluate::Surface(before), {.samples = 5000, .stop = 1e-4})
+      evaluate::refine_rigid(points, geometry::Surface(before), {.samples = 5000, .stop = 1e-4})
           .transform;
   return {frame.axes * found.rotation * frame.axes.transpose(), frame.axes * found.translation,
           frame.origin};

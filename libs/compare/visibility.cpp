@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "geometry/occluders.h"
 #include "scene/any_camera.h"
-#include "texture/occluders.h"
 
 namespace axial::compare {
 namespace {
@@ -45,7 +45,7 @@ class Sights {
 
   const SeenSurvey& survey_;
   double slack_;
-  texture::Occluders occluders_;
+  geometry::Occluders occluders_;
   std::vector<AnyCamera<double>> cameras_;
 };
 

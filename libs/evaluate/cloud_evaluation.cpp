@@ -40,7 +40,7 @@ void check(std::span<const Eigen::Vector3f> points) {
     if (!points[i].allFinite()) fail("point {} of the cloud is not finite", i);
 }
 
-Places draw_places(const Mesh& truth, const Surface& surface, std::span<const View> views,
+Places draw_places(const Mesh& truth, const geometry::Surface& surface, std::span<const View> views,
                    const CloudOptions& options) {
   return draw_places(truth, surface, views, {options.samples, options.seed, options.least_views});
 }
@@ -95,17 +95,17 @@ std::vector<float> nearest_point_distances(std::span<const Eigen::Vector3f> quer
 }
 
 CloudEvaluation evaluate_cloud(std::span<const Eigen::Vector3f> points, const Mesh& truth,
-                               const Surface& surface, std::span<const View> views,
+                               const geometry::Surface& surface, std::span<const View> views,
                                const CloudOptions& options) {
   check(options);
   check(points);
   Places places = draw_places(truth, surface, views, options);
   std::vector<float> found = nearest_point_distances(places.positions, points);
-  return summed_up(distances_to(surface, points), std::move(found), std::move(places), views,
-                   options);
+  return summed_up(geometry::distances_to(surface, points), std::move(found), std::move(places),
+                   views, options);
 }
 
-CloudEvaluation evaluate_mesh(const Mesh& mesh, const Mesh& truth, const Surface& surface,
+CloudEvaluation evaluate_mesh(const Mesh& mesh, const Mesh& truth, const geometry::Surface& surface,
                               std::span<const View> views, const CloudOptions& options,
                               std::vector<Eigen::Vector3f>& sampled,
                               std::vector<std::uint32_t>* faces) {
@@ -114,9 +114,9 @@ CloudEvaluation evaluate_mesh(const Mesh& mesh, const Mesh& truth, const Surface
   // sampled at the same points.
   sampled = sample_surface(mesh, options.samples, options.seed + 1, faces);
   Places places = draw_places(truth, surface, views, options);
-  std::vector<float> found = distances_to(Surface(mesh), places.positions);
-  return summed_up(distances_to(surface, sampled), std::move(found), std::move(places), views,
-                   options);
+  std::vector<float> found = geometry::distances_to(geometry::Surface(mesh), places.positions);
+  return summed_up(geometry::distances_to(surface, sampled), std::move(found), std::move(places),
+                   views, options);
 }
 
 }  // namespace axial::evaluate

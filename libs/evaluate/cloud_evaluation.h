@@ -12,8 +12,8 @@
 
 #include "evaluate/places.h"
 #include "evaluate/statistics.h"
-#include "evaluate/surface.h"
 #include "evaluate/views.h"
+#include "geometry/surface.h"
 #include "scene/mesh.h"
 
 namespace axial::evaluate {
@@ -53,7 +53,7 @@ struct CloudEvaluation {
 // are no points, a point is not finite, there is no tolerance, a tolerance is not positive and
 // finite, `options.samples` is 0, the area of `truth` is 0 or not finite, or no sample counts.
 CloudEvaluation evaluate_cloud(std::span<const Eigen::Vector3f> points, const Mesh& truth,
-                               const Surface& surface, std::span<const View> views,
+                               const geometry::Surface& surface, std::span<const View> views,
                                const CloudOptions& options);
 
 // Evaluates a mesh. Accuracy is the exact distance from `options.samples` samples of `mesh` to
@@ -63,7 +63,7 @@ CloudEvaluation evaluate_cloud(std::span<const Eigen::Vector3f> points, const Me
 // `truth` to the triangles of `mesh`. Counted samples, `surface`, `views` and the errors of
 // `options` and `truth` are as for evaluate_cloud(). Error, too, if the area of `mesh` is 0 or not
 // finite, a face index is out of range or a coordinate is not finite.
-CloudEvaluation evaluate_mesh(const Mesh& mesh, const Mesh& truth, const Surface& surface,
+CloudEvaluation evaluate_mesh(const Mesh& mesh, const Mesh& truth, const geometry::Surface& surface,
                               std::span<const View> views, const CloudOptions& options,
                               std::vector<Eigen::Vector3f>& sampled,
                               std::vector<std::uint32_t>* faces = nullptr);

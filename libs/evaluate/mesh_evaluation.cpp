@@ -25,13 +25,13 @@ Eigen::Vector3d normal_of(const Mesh& mesh, std::uint32_t face) {
   return (mesh.vertices[f[1]].cast<double>() - a).cross(mesh.vertices[f[2]].cast<double>() - a);
 }
 
-Nearest nearest_of(const Mesh& mesh, const MeshSamples& samples, const Surface& truth) {
+Nearest nearest_of(const Mesh& mesh, const MeshSamples& samples, const geometry::Surface& truth) {
   Nearest nearest{std::vector<Eigen::Vector3f>(samples.positions.size()),
                   std::vector<float>(samples.positions.size(), kNoAngle)};
   parallel_for(
       samples.positions.size(),
       [&](std::size_t i) {
-        const ClosestPoint closest = truth.closest(samples.positions[i].cast<double>());
+        const geometry::ClosestPoint closest = truth.closest(samples.positions[i].cast<double>());
         nearest.places[i] = closest.point.cast<float>();
         const Eigen::Vector3d n = normal_of(mesh, samples.faces[i]);
         const Eigen::Vector3d true_n = truth.face_normal(closest.face);
@@ -94,7 +94,7 @@ UnseenArea unseen_area(const std::vector<std::uint32_t>& counts, const CloudOpti
 }  // namespace
 
 MeshEvaluation evaluate_mesh_parts(const Mesh& mesh, const MeshSamples& samples,
-                                   const Surface& truth, std::span<const View> views,
+                                   const geometry::Surface& truth, std::span<const View> views,
                                    const CloudOptions& options, const CloudEvaluation& whole) {
   MeshEvaluation result;
   const Nearest nearest = nearest_of(mesh, samples, truth);

@@ -12,9 +12,9 @@
 
 #include "evaluate/cloud_evaluation.h"
 #include "evaluate/statistics.h"
-#include "evaluate/surface.h"
 #include "evaluate/topology.h"
 #include "evaluate/views.h"
+#include "geometry/surface.h"
 #include "scene/mesh.h"
 
 namespace axial::evaluate {
@@ -75,7 +75,7 @@ struct MeshSamples {
 // `truth` decides which views see a place, so the mesh itself hides no place. Error as for
 // topology_of() (topology.h).
 MeshEvaluation evaluate_mesh_parts(const Mesh& mesh, const MeshSamples& samples,
-                                   const Surface& truth, std::span<const View> views,
+                                   const geometry::Surface& truth, std::span<const View> views,
                                    const CloudOptions& options, const CloudEvaluation& whole);
 
 }  // namespace axial::evaluate

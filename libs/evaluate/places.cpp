@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMostDraws = 20;     // factor of the requested samples
 constexpr std::uint32_t kEnoughViews = 4;  // this many views and more are one class
 
-Places seen_places(const Mesh& truth, const Surface& surface, std::span<const View> views,
+Places seen_places(const Mesh& truth, const geometry::Surface& surface, std::span<const View> views,
                    std::size_t samples, const PlaceDraw& draw) {
   Places places;
   places.drawn = samples;
@@ -80,7 +80,7 @@ std::vector<RecallOfThickness> thickness_classes(std::size_t tolerances) {
 
 }  // namespace
 
-Places draw_places(const Mesh& truth, const Surface& surface, std::span<const View> views,
+Places draw_places(const Mesh& truth, const geometry::Surface& surface, std::span<const View> views,
                    const PlaceDraw& draw) {
   Places places = seen_places(truth, surface, views, draw.samples, draw);
   if (views.empty()) return places;
@@ -110,12 +110,10 @@ std::vector<RecallOfViews> recall_by_views(const Places& places, std::span<const
   return classes;
 }
 
-std::vector<RecallOfThickness> recall_by_thickness(const Places& places,
-                                                   std::span<const float> distances,
-                                                   std::span<const double> tolerances,
-                                                   const Mesh& truth, const Surface& surface,
-                                                   std::span<const float> thickness,
-                                                   std::span<const View> views) {
+std::vector<RecallOfThickness> recall_by_thickness(
+    const Places& places, std::span<const float> distances, std::span<const double> tolerances,
+    const Mesh& truth, const geometry::Surface& surface, std::span<const float> thickness,
+    std::span<const View> views) {
   if (thickness.size() != truth.vertices.size())
     fail("the truth has {} values of thickness for {} vertices", thickness.size(),
          truth.vertices.size());

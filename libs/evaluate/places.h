@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "evaluate/surface.h"
 #include "evaluate/views.h"
+#include "geometry/surface.h"
 #include "scene/mesh.h"
 
 namespace axial::evaluate {
@@ -40,7 +40,7 @@ struct PlaceDraw {
 // are kept. The repeated draw has at most 20 * draw.samples samples, so fewer may be kept.
 // Precondition: `surface` is made from `truth`. Error if there are views but no sample is kept, or
 // as for sample_surface().
-Places draw_places(const Mesh& truth, const Surface& surface, std::span<const View> views,
+Places draw_places(const Mesh& truth, const geometry::Surface& surface, std::span<const View> views,
                    const PlaceDraw& draw);
 
 // Recall of the places that `least` to `most` views see.
@@ -83,11 +83,9 @@ struct RecallOfThickness {
 // the reconstruction [m], in the order of `places`. `tolerances`: [m]. Preconditions: `places` are
 // drawn from `truth`, and `surface` is made from `truth`. Error if the number of values in
 // `thickness` is not the number of vertices.
-std::vector<RecallOfThickness> recall_by_thickness(const Places& places,
-                                                   std::span<const float> distances,
-                                                   std::span<const double> tolerances,
-                                                   const Mesh& truth, const Surface& surface,
-                                                   std::span<const float> thickness,
-                                                   std::span<const View> views);
+std::vector<RecallOfThickness> recall_by_thickness(
+    const Places& places, std::span<const float> distances, std::span<const double> tolerances,
+    const Mesh& truth, const geometry::Surface& surface, std::span<const float> thickness,
+    std::span<const View> views);
 
 }  // namespace axial::evaluate

@@ -26,7 +26,7 @@ cv::Vec3b rounded(const Eigen::Vector3f& bgr) {
 // Calls visit(x, y, i, hit) for every ray of every pixel, where `i` counts the rays of a pixel and
 // `hit` is nothing if the ray meets no face. Rows are visited concurrently.
 template <class Visit>
-void for_each_ray(const Surface& surface, const View& view, const RenderOptions& options,
+void for_each_ray(const geometry::Surface& surface, const View& view, const RenderOptions& options,
                   const Visit& visit) {
   if (options.samples < 1 || options.samples > 16)
     fail("samples is {}: must be between 1 and 16", options.samples);
@@ -64,7 +64,7 @@ Coloring texture_coloring(const TexturedMesh& mesh) {
   for (const std::uint32_t texture : mesh.texture_of)
     if (texture >= mesh.textures.size() || mesh.textures[texture].empty())
       fail("the mesh has no texture {}", texture);
-  return [&mesh](const SurfaceHit& hit) -> SurfaceColor {
+  return [&mesh](const geometry::SurfaceHit& hit) -> SurfaceColor {
     const TexturedMesh::Corners& uv = mesh.uv[hit.face];
     const Eigen::Vector2f at = uv[0] + hit.u * (uv[1] - uv[0]) + hit.v * (uv[2] - uv[0]);
     const bool is_known = uv[0] != uv[1] || uv[0] != uv[2];
@@ -77,21 +77,21 @@ Coloring vertex_coloring(std::span<const std::array<std::uint32_t, 3>> faces,
   for (const auto& face : faces)
     for (const std::uint32_t corner : face)
       if (corner >= colors.size()) fail("vertex {} of the mesh has no colour", corner);
-  return [faces, colors](const SurfaceHit& hit) -> SurfaceColor {
+  return [faces, colors](const geometry::SurfaceHit& hit) -> SurfaceColor {
     const auto& [a, b, c] = faces[hit.face];
     return {(1 - hit.u - hit.v) * as_bgr(colors[a]) + hit.u * as_bgr(colors[b]) +
             hit.v * as_bgr(colors[c])};
   };
 }
 
-RenderedView render_mesh(const Surface& surface, const Coloring& coloring, const View& view,
-                         const RenderOptions& options) {
+RenderedView render_mesh(const geometry::Surface& surface, const Coloring& coloring,
+                         const View& view, const RenderOptions& options) {
   RenderedView result{cv::Mat3b(view.camera.height, view.camera.width), full_mask(view),
                       full_mask(view)};
   cv::Mat3f sums(result.image.size(), cv::Vec3f(0, 0, 0));
   const Eigen::Vector3f background = as_bgr(options.background);
   for_each_ray(surface, view, options,
-               [&](int x, int y, int, const std::optional<SurfaceHit>& hit) {
+               [&](int x, int y, int, const std::optional<geometry::SurfaceHit>& hit) {
                  const SurfaceColor color = hit ? coloring(*hit) : SurfaceColor{background, false};
                  if (!hit) result.covered(y, x) = 0;
                  if (!color.is_known) result.known(y, x) = 0;
@@ -106,10 +106,11 @@ RenderedView render_mesh(const Surface& surface, const Coloring& coloring, const
   return result;
 }
 
-cv::Mat1b covered_pixels(const Surface& surface, const View& view, const RenderOptions& options) {
+cv::Mat1b covered_pixels(const geometry::Surface& surface, const View& view,
+                         const RenderOptions& options) {
   cv::Mat1b covered = full_mask(view);
   for_each_ray(surface, view, options,
-               [&](int x, int y, int, const std::optional<SurfaceHit>& hit) {
+               [&](int x, int y, int, const std::optional<geometry::SurfaceHit>& hit) {
                  if (!hit) covered(y, x) = 0;
                });
   return covered;

@@ -8,8 +8,8 @@
 #include <functional>
 #include <opencv2/core.hpp>
 
-#include "evaluate/surface.h"
 #include "evaluate/views.h"
+#include "geometry/surface.h"
 #include "scene/textured_mesh.h"
 
 namespace axial::evaluate {
@@ -20,7 +20,7 @@ struct SurfaceColor {
 };
 
 // Returns the colour at a place of the surface. Called concurrently.
-using Coloring = std::function<SurfaceColor(const SurfaceHit&)>;
+using Coloring = std::function<SurfaceColor(const geometry::SurfaceHit&)>;
 
 // Returns the colours of the texture, interpolated bilinearly between the centres of the texels. A
 // place beyond the outermost centres has the colour of the nearest place between them. A face whose
@@ -54,11 +54,11 @@ struct RenderedView {
 // glass; in air, at the camera centre), and ends at the first face that it meets, from either side.
 // Light is not attenuated, and faces are not shaded. Error if RenderOptions::samples is out of
 // range.
-RenderedView render_mesh(const Surface& surface, const Coloring& coloring, const View& view,
-                         const RenderOptions& options = {});
+RenderedView render_mesh(const geometry::Surface& surface, const Coloring& coloring,
+                         const View& view, const RenderOptions& options = {});
 
 // Returns the mask RenderedView::covered alone.
-cv::Mat1b covered_pixels(const Surface& surface, const View& view,
+cv::Mat1b covered_pixels(const geometry::Surface& surface, const View& view,
                          const RenderOptions& options = {});
 
 // Sums of the differences of grey levels between two pictures. The differences of the three

@@ -31,7 +31,7 @@ CameraModel dry_camera(const io::ColmapCamera& camera) {
 
 // `surface` may be null: nothing occludes the point.
 template <class Camera>
-bool sees(const Camera& camera, const View& view, const Surface* surface,
+bool sees(const Camera& camera, const View& view, const geometry::Surface* surface,
           const Eigen::Vector3d& point) {
   const auto image = camera.project(view.pose.to_camera(point));
   const bool inside = image.visible && image.pixel.x() >= -0.5 && image.pixel.y() >= -0.5 &&
@@ -45,7 +45,7 @@ bool sees(const Camera& camera, const View& view, const Surface* surface,
 // other, concurrently for different points. `surface` may be null: nothing occludes the points.
 template <class Visit>
 void for_each_sight(std::span<const Eigen::Vector3f> points, std::span<const View> views,
-                    const Surface* surface, const Visit& visit) {
+                    const geometry::Surface* surface, const Visit& visit) {
   for (const View& view : views) {
     std::visit(
         [&](const auto& camera) {
@@ -61,7 +61,7 @@ void for_each_sight(std::span<const Eigen::Vector3f> points, std::span<const Vie
 }
 
 std::vector<std::uint32_t> count(std::span<const Eigen::Vector3f> points,
-                                 std::span<const View> views, const Surface* surface) {
+                                 std::span<const View> views, const geometry::Surface* surface) {
   std::vector<std::uint32_t> counts(points.size(), 0);
   for_each_sight(points, views, surface,
                  [&](std::size_t i, const auto&, const View&) { ++counts[i]; });
@@ -98,7 +98,8 @@ std::vector<View> views_of_model(const io::ColmapModel& model, const io::Housing
 }
 
 std::vector<std::uint32_t> count_views(std::span<const Eigen::Vector3f> points,
-                                       std::span<const View> views, const Surface& surface) {
+                                       std::span<const View> views,
+                                       const geometry::Surface& surface) {
   return count(points, views, &surface);
 }
 
@@ -108,7 +109,7 @@ std::vector<std::uint32_t> count_frames(std::span<const Eigen::Vector3f> points,
 }
 
 std::vector<float> pixel_widths(std::span<const Eigen::Vector3f> points,
-                                std::span<const View> views, const Surface& surface) {
+                                std::span<const View> views, const geometry::Surface& surface) {
   std::vector<double> sums(points.size(), 0);
   std::vector<std::uint32_t> counts(points.size(), 0);
   for_each_sight(points, views, &surface, [&](std::size_t i, const auto& camera, const View& view) {

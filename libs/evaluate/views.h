@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/surface.h"
+#include "geometry/surface.h"
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
 #include "scene/camera_model.h"
@@ -37,7 +37,8 @@ std::vector<View> views_of_model(const io::ColmapModel& model, const io::Housing
 // port, where the ray of the point's image crosses the outer face of the glass. The orientation of
 // the surface does not matter.
 std::vector<std::uint32_t> count_views(std::span<const Eigen::Vector3f> points,
-                                       std::span<const View> views, const Surface& surface);
+                                       std::span<const View> views,
+                                       const geometry::Surface& surface);
 
 // Returns, for each point [world], the number of views into whose image rectangle the point is
 // projected. Occlusion is not tested, so points slightly below the surface count like points on it.
@@ -49,6 +50,6 @@ std::vector<std::uint32_t> count_frames(std::span<const Eigen::Vector3f> points,
 // width is the motion of the point across its ray that moves the image by one pixel (geometric mean
 // over the directions).
 std::vector<float> pixel_widths(std::span<const Eigen::Vector3f> points,
-                                std::span<const View> views, const Surface& surface);
+                                std::span<const View> views, const geometry::Surface& surface);
 
 }  // namespace axial::evaluate

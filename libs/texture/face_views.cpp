@@ -114,7 +114,7 @@ bool any_face_inside(const Mesh& mesh, std::span<const ProjectedVertex> vertices
 struct Scenery {
   const Mesh& mesh;
   std::span<const Eigen::Vector3f> normals;  // one per vertex of `mesh`
-  const Occluders& occluders;                // of the whole mesh
+  const geometry::Occluders& occluders;      // of the whole mesh
 };
 
 // What one view sees.
@@ -218,7 +218,7 @@ class Observer {
 
   const Mesh& mesh_;
   std::span<const Eigen::Vector3f> normals_;
-  const Occluders& occluders_;
+  const geometry::Occluders& occluders_;
   const VisibilityOptions& options_;
   const Camera& camera_;
   const View& view_;

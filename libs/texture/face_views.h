@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "geometry/occluders.h"
 #include "scene/mesh.h"
 #include "texture/memory.h"
 #include "texture/mesh_tiles.h"
-#include "texture/occluders.h"
 #include "texture/views.h"
 
 namespace axial::texture {
@@ -81,7 +81,7 @@ struct Surroundings {
   // `mesh` must outlive the object. Errors as for Occluders (occluders.h).
   explicit Surroundings(const Mesh& mesh);
 
-  Occluders occluders;
+  geometry::Occluders occluders;
   std::vector<Eigen::Vector3f> normals;
 };
 

@@ -33,7 +33,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "evaluate/surface.h"
+#include "geometry/surface.h"
 #include "map/geotiff.h"
 #include "map_edges.h"
 #include "map_truth.h"
@@ -72,8 +72,8 @@ void print_heights(const map::StoredMap& dem, const TrueMap& truth,
       points.emplace_back(static_cast<float>(dem.grid.left + (x + 0.5) * dem.grid.pixel),
                           static_cast<float>(dem.grid.top - (y + 0.5) * dem.grid.pixel), height);
     }
-  const evaluate::Surface surface({mesh.vertices, {}, mesh.faces});
-  const Spread near = spread_of(evaluate::distances_to(surface, points));
+  const geometry::Surface surface({mesh.vertices, {}, mesh.faces});
+  const Spread near = spread_of(geometry::distances_to(surface, points));
   const Spread vertical = spread_of(differences);
   std::cout << fmt::format("distances: RMS {:.3f} median {:.3f} mm\n", 1000 * near.rms,
                            1000 * near.median);

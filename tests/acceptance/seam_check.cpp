@@ -19,7 +19,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "cloud/tiles.h"
-#include "evaluate/surface.h"
+#include "geometry/surface.h"
 #include "io/bytes/json.h"
 #include "io/ply/ply.h"
 
@@ -62,7 +62,7 @@ struct Strip {
 };
 
 std::vector<Strip> strips_of(const std::string& file, const std::vector<cloud::Tile>& tiles,
-                             const evaluate::Surface& surface, double width) {
+                             const geometry::Surface& surface, double width) {
   std::vector<Eigen::Vector3f> near;
   std::vector<std::size_t> strip_of;
   for (const Eigen::Vector3f& point : io::read_cloud_ply(file).positions) {
@@ -71,7 +71,7 @@ std::vector<Strip> strips_of(const std::string& file, const std::vector<cloud::T
     near.push_back(point);
     strip_of.push_back(static_cast<std::size_t>(distance));
   }
-  const std::vector<float> errors = evaluate::distances_to(surface, near);
+  const std::vector<float> errors = geometry::distances_to(surface, near);
   std::vector<Strip> strips(kStrips);
   for (std::size_t i = 0; i < near.size(); ++i) {
     ++strips[strip_of[i]].points;
@@ -84,7 +84,7 @@ int run(int argc, char** argv) {
   if (argc < 6) fail("seam_check WHOLE.ply TILED.ply MESH.ply WIDTH TILE.json...");
   std::vector<cloud::Tile> tiles;
   for (int i = 5; i < argc; ++i) tiles.push_back(read_tile(argv[i]));
-  const evaluate::Surface surface(io::read_mesh_ply(argv[3]));
+  const geometry::Surface surface(io::read_mesh_ply(argv[3]));
   const double width = std::stod(argv[4]);
   const std::vector<Strip> whole = strips_of(argv[1], tiles, surface, width);
   const std::vector<Strip> tiled = strips_of(argv[2], tiles, surface, width);

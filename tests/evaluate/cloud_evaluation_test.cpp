@@ -25,7 +25,7 @@ TEST(EvaluateCloud, PointsAtAKnownOffsetFromASphere) {
   CloudOptions options;
   options.samples = 20000;
   options.tolerances = {0.002};
-  const CloudEvaluation e = evaluate_cloud(points, truth, Surface(truth), {}, options);
+  const CloudEvaluation e = evaluate_cloud(points, truth, geometry::Surface(truth), {}, options);
   const double facet = 6e-5;  // distance of the facets from the sphere
   EXPECT_NEAR(e.accuracy.mean, 0.003, facet);
   EXPECT_NEAR(e.accuracy.median, 0.004, facet);
@@ -48,7 +48,7 @@ TEST(EvaluateCloud, HalfCoveredPlaneIsHalfComplete) {
   CloudOptions options;
   options.samples = 10000;
   options.tolerances = {0.02, 3};
-  const CloudEvaluation e = evaluate_cloud(points, truth, Surface(truth), {}, options);
+  const CloudEvaluation e = evaluate_cloud(points, truth, geometry::Surface(truth), {}, options);
   EXPECT_LT(e.accuracy.max, 1e-9);
   // About one sample falls into each of the truth's cells of 2 cm, so only the hundred cells along
   // the border are random: a standard error of 0.0005. Covered are x < 0 and the strip within reach
@@ -78,7 +78,8 @@ TEST(EvaluateMesh, AMeshAgainstItselfIsPerfect) {
   options.samples = 5000;
   options.tolerances = {0.001};
   std::vector<Eigen::Vector3f> sampled;
-  const CloudEvaluation e = evaluate_mesh(truth, truth, Surface(truth), {}, options, sampled);
+  const CloudEvaluation e =
+      evaluate_mesh(truth, truth, geometry::Surface(truth), {}, options, sampled);
   EXPECT_EQ(sampled.size(), 5000u);
   // Samples are rounded to float. Their distance from their triangle is far below their spacing.
   EXPECT_LT(e.accuracy.max, 1e-6);
@@ -88,7 +89,7 @@ TEST(EvaluateMesh, AMeshAgainstItselfIsPerfect) {
 
 TEST(EvaluateCloud, RefusesWhatCannotBeEvaluated) {
   const Mesh truth = flat_square(2, 0);
-  const Surface surface(truth);
+  const geometry::Surface surface(truth);
   const std::vector<Eigen::Vector3f> one{{0, 0, 0}};
   const CloudOptions options;
   EXPECT_THROW(evaluate_cloud({}, truth, surface, {}, options), Error);

@@ -10,7 +10,7 @@ namespace {
 
 MeshEvaluation evaluated(const Mesh& mesh, const Mesh& truth, std::span<const View> views,
                          const CloudOptions& options) {
-  const Surface surface(truth);
+  const geometry::Surface surface(truth);
   std::vector<Eigen::Vector3f> positions;
   std::vector<std::uint32_t> faces;
   const CloudEvaluation whole =

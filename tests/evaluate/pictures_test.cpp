@@ -74,7 +74,7 @@ TEST(Report, TablesAreInMillimetresAndJsonInMetres) {
   const std::vector<Eigen::Vector3f> points{{0, 0, 0.002f}, {0.5f, 0.5f, 0.004f}};
   CloudOptions options;
   options.samples = 100;
-  const CloudEvaluation e = evaluate_cloud(points, truth, Surface(truth), {}, options);
+  const CloudEvaluation e = evaluate_cloud(points, truth, geometry::Surface(truth), {}, options);
   EXPECT_NE(table(e).find("3.000"), std::string::npos) << table(e);
   EXPECT_NE(table(e).find("no cameras given"), std::string::npos);
   const auto json = to_json(e);

@@ -36,7 +36,7 @@ CloudEvaluation evaluated(const std::vector<Eigen::Vector3f>& points, const Mesh
   options.samples = 40000;
   options.tolerances = {kTolerance, 10};
   options.least_views = least;
-  return evaluate_cloud(points, truth, Surface(truth), views, options);
+  return evaluate_cloud(points, truth, geometry::Surface(truth), views, options);
 }
 
 TEST(RecallByViews, IsOfThePlacesThatExactlySoManySee) {
@@ -97,7 +97,7 @@ TEST(RecallByThickness, CountsPixelsWhereTheViewsHaveThem) {
   auto points = grid(-0.3, -0.1);
   for (const auto& x : grid(0.1, 0.205)) points.push_back(x);
   const CloudEvaluation e = evaluated(points, truth, views);
-  const Surface surface(truth);
+  const geometry::Surface surface(truth);
   const std::vector<double> tolerances{kTolerance};
   const auto classes = recall_by_thickness(e.places, e.place_distances, tolerances, truth, surface,
                                            thickness, views);

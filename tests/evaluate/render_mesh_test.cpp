@@ -64,7 +64,7 @@ cv::Vec3d ramp_at(double x, double y) {
 
 RenderedView rendered(const TexturedMesh& mesh, const View& view,
                       const RenderOptions& options = {}) {
-  return render_mesh(Surface(mesh.mesh), texture_coloring(mesh), view, options);
+  return render_mesh(geometry::Surface(mesh.mesh), texture_coloring(mesh), view, options);
 }
 
 // The largest difference to the colours that the ramps have at scale(tangent of the angle in air)
@@ -155,7 +155,7 @@ TEST(RenderMesh, EveryCameraSeesWhatTheSimulatorSees) {
         simulate::develop(simulate::render_radiance(scene, shade, lens, port,
                                                     {view.pose.rotation, view.pose.centre}, 3),
                           0, 0);
-    const RenderedView picture = render_mesh(Surface(seabed), coloring, view);
+    const RenderedView picture = render_mesh(geometry::Surface(seabed), coloring, view);
     EXPECT_EQ(cv::countNonZero(picture.covered), 80 * 60) << name;
     // Sums in another order are rounded differently.
     EXPECT_LE(cv::norm(picture.image, expected, cv::NORM_INF), 1) << name;
@@ -176,7 +176,7 @@ TEST(RenderMesh, WhatTheMeshDoesNotCoverIsBackground) {
   Mesh mesh = flat_square(0.4, 0);
   mesh.colors.assign(mesh.vertices.size(), {10, 20, 30});
   const RenderedView picture =
-      render_mesh(Surface(mesh), vertex_coloring(mesh.faces, mesh.colors), view);
+      render_mesh(geometry::Surface(mesh), vertex_coloring(mesh.faces, mesh.colors), view);
   for (int v = 0; v < 60; ++v)
     for (int u = 0; u < 80; ++u) {
       const bool inside = u >= 26 && u <= 53 && v >= 16 && v <= 43;
@@ -184,7 +184,8 @@ TEST(RenderMesh, WhatTheMeshDoesNotCoverIsBackground) {
       EXPECT_EQ(picture.known(v, u) != 0, inside) << u << " " << v;
       EXPECT_EQ(picture.image(v, u), inside ? cv::Vec3b(30, 20, 10) : cv::Vec3b(255, 255, 255));
     }
-  EXPECT_EQ(cv::norm(picture.covered, covered_pixels(Surface(mesh), view), cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(picture.covered, covered_pixels(geometry::Surface(mesh), view), cv::NORM_INF),
+            0);
 }
 
 TEST(RenderMesh, TheNearerSurfaceHidesTheFartherOne) {
@@ -196,7 +197,8 @@ TEST(RenderMesh, TheNearerSurfaceHidesTheFartherOne) {
   mesh.vertices.insert(mesh.vertices.end(), upper.vertices.begin(), upper.vertices.end());
   mesh.colors.resize(mesh.vertices.size(), {0, 0, 200});
   const cv::Mat3b image =
-      render_mesh(Surface(mesh), vertex_coloring(mesh.faces, mesh.colors), looking_down()).image;
+      render_mesh(geometry::Surface(mesh), vertex_coloring(mesh.faces, mesh.colors), looking_down())
+          .image;
   EXPECT_EQ(image(30, 40), cv::Vec3b(200, 0, 0));
   EXPECT_EQ(image(5, 5), cv::Vec3b(0, 0, 200));
 }

@@ -29,13 +29,13 @@ refractive::FlatPort<double> port() {
 }
 
 std::uint32_t views_of(const Eigen::Vector3d& point, const std::vector<View>& views,
-                       const Surface& surface) {
+                       const geometry::Surface& surface) {
   const std::vector<Eigen::Vector3f> points{point.cast<float>()};
   return count_views(points, views, surface)[0];
 }
 
 TEST(CountViews, KeepsToTheImageRectangle) {
-  const Surface floor(flat_square(6, 1));
+  const geometry::Surface floor(flat_square(6, 1));
   const std::vector<View> views{camera_at({0, 0, 0})};
   EXPECT_EQ(views_of({0, 0, 1}, views, floor), 1u);
   EXPECT_EQ(views_of({0.99, 0.49, 1}, views, floor), 1u);
@@ -49,7 +49,7 @@ TEST(CountViews, APlateHidesWhatLiesInItsShadow) {
   const Mesh plate = flat_square(0.5, 1);  // half extent 0.25, half way: its shadow reaches 0.5
   for (const auto& f : plate.faces) mesh.faces.push_back({f[0] + 4, f[1] + 4, f[2] + 4});
   mesh.vertices.insert(mesh.vertices.end(), plate.vertices.begin(), plate.vertices.end());
-  const Surface surface(mesh);
+  const geometry::Surface surface(mesh);
   const std::vector<View> views{camera_at({0, 0, 0}), camera_at({1, 0, 0})};
   EXPECT_EQ(views_of({0.45, 0, 2}, views, surface), 1u) << "hidden from the first view only";
   EXPECT_EQ(views_of({0.55, 0, 2}, views, surface), 2u);
@@ -64,12 +64,12 @@ TEST(CountFrames, IsTheRectangleAloneInAirAndUnderWater) {
   // At 1 m, a point 0.72 m aside is inside the image in air and outside under water.
   const std::vector<Eigen::Vector3f> points{{0, 0, 1}, {0, 0, 7}, {0.72f, 0, 1}, {1.1f, 0, 1}};
   EXPECT_THAT(count_frames(points, views), testing::ElementsAre(2u, 2u, 1u, 0u));
-  const Surface floor(flat_square(6, 1));  // hides the second point from both cameras
+  const geometry::Surface floor(flat_square(6, 1));  // hides the second point from both cameras
   EXPECT_THAT(count_views(points, views, floor), testing::ElementsAre(2u, 0u, 1u, 0u));
 }
 
 TEST(CountViews, WaterNarrowsTheFieldOfView) {
-  const Surface floor(flat_square(6, 1));
+  const geometry::Surface floor(flat_square(6, 1));
   View wet = camera_at({0, 0, 0});
   wet.camera.port = port();
   // The edge of the image: the ray of u = -0.5, v = 49.5 in closed form by Snell's law.
@@ -93,12 +93,12 @@ TEST(CountViews, TheLineOfSightInWaterEndsAtThePort) {
     scene.vertices.insert(scene.vertices.end(), plate.vertices.begin(), plate.vertices.end());
     View wet = camera_at({0, 0, 0});
     wet.camera.port = port();
-    EXPECT_EQ(views_of({0.1, 0.1, 1}, {wet}, Surface(scene)), z < 0.05 ? 1u : 0u) << z;
+    EXPECT_EQ(views_of({0.1, 0.1, 1}, {wet}, geometry::Surface(scene)), z < 0.05 ? 1u : 0u) << z;
   }
 }
 
 TEST(PixelWidths, AreDistanceOverFocalLengthInTheMeanOfTheViewsThatSee) {
-  const Surface floor(flat_square(6, 2));
+  const geometry::Surface floor(flat_square(6, 2));
   // Cameras 2 m and 1 m above the floor, focal length 100 px.
   const std::vector<View> views{camera_at({0, 0, 0}), camera_at({0, 0, 1})};
   const std::vector<Eigen::Vector3f> points{{0, 0, 2}, {1.5f, 0, 2}, {2.9f, 0, 2}};

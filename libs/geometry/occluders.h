@@ -7,7 +7,7 @@
 
 #include "scene/mesh.h"
 
-namespace axial::texture {
+namespace axial::geometry {
 
 // The faces of a mesh, prepared for tests whether they hide a point.
 class Occluders {
@@ -32,4 +32,4 @@ class Occluders {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace axial::texture
+}  // namespace axial::geometry

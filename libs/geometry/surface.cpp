@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evaluate/surface.h"
+#include "geometry/surface.h"
 
 #include <embree3/rtcore.h>
 
@@ -9,9 +9,9 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "evaluate/triangle_distance.h"
+#include "geometry/triangle_distance.h"
 
-namespace axial::evaluate {
+namespace axial::geometry {
 
 struct Surface::Impl {
   std::vector<Eigen::Vector3f> vertices;
@@ -200,4 +200,4 @@ std::vector<float> distances_to(const Surface& surface, std::span<const Eigen::V
   return distances;
 }
 
-}  // namespace axial::evaluate
+}  // namespace axial::geometry

@@ -11,7 +11,7 @@
 
 #include "scene/mesh.h"
 
-namespace axial::evaluate {
+namespace axial::geometry {
 
 // The point of a surface that is nearest to a query.
 struct ClosestPoint {
@@ -70,4 +70,4 @@ class Surface {
 // Returns the unsigned distance [m] of every point to the surface, in the order of `points`.
 std::vector<float> distances_to(const Surface& surface, std::span<const Eigen::Vector3f> points);
 
-}  // namespace axial::evaluate
+}  // namespace axial::geometry

@@ -8,7 +8,7 @@
 #include <array>
 #include <utility>
 
-namespace axial::evaluate {
+namespace axial::geometry {
 
 // The point of the segment ab that is nearest to p. A segment of length 0 is a point.
 inline Eigen::Vector3d closest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
@@ -45,4 +45,4 @@ inline Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& p,
   return best;
 }
 
-}  // namespace axial::evaluate
+}  // namespace axial::geometry

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "texture/occluders.h"
+#include "geometry/occluders.h"
 
 #include <embree3/rtcore.h>
 
@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "scene/check_mesh.h"
 
-namespace axial::texture {
+namespace axial::geometry {
 namespace {
 
 // Embree leaves out triangles with larger coordinates, and aborts at rays with larger numbers.
@@ -79,4 +79,4 @@ bool Occluders::between(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
   return ray.tfar < 0;
 }
 
-}  // namespace axial::texture
+}  // namespace axial::geometry

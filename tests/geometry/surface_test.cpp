@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evaluate/surface.h"
+#include "geometry/surface.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,12 @@
 #include "base/parallel.h"
 #include "evaluate/sampling.h"
 #include "evaluate/shapes.h"
-#include "evaluate/triangle_distance.h"
+#include "geometry/triangle_distance.h"
 
-namespace axial::evaluate {
+namespace axial::geometry {
 namespace {
+
+using namespace evaluate;  // shapes and samples
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
@@ -177,4 +179,4 @@ TEST(Sampling, SubsampleKeepsOrderAndSize) {
 }
 
 }  // namespace
-}  // namespace axial::evaluate
+}  // namespace axial::geometry

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How many cameras look at each face of a mesh, and at which side of it.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/progress.h"
+#include "scene/camera_model.h"
+#include "scene/mesh.h"
+#include "scene/pose.h"
+
+namespace axial::geometry {
+
+// A camera with its pose in the frame of the mesh.
+struct PosedCamera {
+  CameraModel camera;
+  Pose pose;
+};
+
+struct SightOptions {
+  // A face does not hide a point if it crosses the path of light less than tolerance * L from the
+  // point. L is the length of the path from the point to the place where the light leaves the
+  // water. Range: 0 to 1.
+  double tolerance = 1e-3;
+  // The smallest |cosine| of the angle between the path of light and the normal of a face at which
+  // a camera counts. Range: 0 to 1.
+  double least_cosine = 0;
+};
+
+// For each face, the numbers of cameras that see its middle from either side. The front is the side
+// from which the corners of the face are counterclockwise.
+struct FaceSights {
+  std::vector<std::uint16_t> front, back;
+};
+
+// Counts the cameras that see the middle of each face (the mean of its corners). A camera sees a
+// point if the exact projection of the point lies in the image rectangle, from -0.5 to
+// width - 0.5 and from -0.5 to height - 0.5, and if no face of the mesh crosses the path of light
+// from the point to the place where the light leaves the water. Numbers above 65,535 count as
+// 65,535. Faces without area are seen from no side. Calls progress(done, total) with numbers of
+// cameras. The result does not depend on the number of threads. Error for a mesh that Occluders
+// refuses (geometry/occluders.h).
+FaceSights count_sights(const Mesh& mesh, std::span<const PosedCamera> cameras,
+                        const SightOptions& options = {}, const ProgressSink& progress = {});
+
+// The memory [bytes] of count_sights() with its result.
+std::uint64_t bytes_of_sights(const Mesh& mesh);
+
+}  // namespace axial::geometry
