@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <opencv2/imgcodecs.hpp>
 
+#include "io/gltf_builder.h"
 #include "io/openmvs/point_source.h"
 #include "io/ply/ply_property.h"
 #include "io/ply/ply_transform.h"
@@ -57,6 +59,15 @@ TexturedMesh small_textured(std::size_t textures) {
   return mesh;
 }
 
+// What programs ask of a mesh before they read it.
+void ask_of_mesh(const fs::path& file) {
+  io::mesh_place(file);
+  io::bytes_to_read_mesh(file);
+  io::texture_files_of(file);
+  io::read_shape(file, LocalFrame{{1e6, -2e6, 3}});
+  if (io::is_textured_mesh(file)) io::bytes_to_read_textures(file);
+}
+
 // The textures are beside the file. Texture coordinates are rounded when they are written and read.
 void read_textured_file(const fs::path& file) {
   const cv::Mat3b texture(4, 8, cv::Vec3b(1, 2, 3));
@@ -64,6 +75,7 @@ void read_textured_file(const fs::path& file) {
     if (!fs::exists(file.parent_path() / name))
       io::write_textured_mesh(file.parent_path() / "mesh.ply", {{}, {}, {}, {texture, texture}},
                               io::TexturedFormat::ply);
+  ask_of_mesh(file);
   const auto read = [](const fs::path& path) { return io::read_textured_ply(path); };
   const TexturedMesh mesh = read(file);
   const TexturedMesh again =
@@ -75,14 +87,24 @@ void read_textured_file(const fs::path& file) {
   require(again.texture_of == mesh.texture_of, "the copy has other texture numbers");
 }
 
-// The copy has its own order of vertices and faces.
+// A GLB with any extension.
+void write_glb(const fs::path& path, const TexturedMesh& mesh) {
+  io::write_textured_mesh(path, mesh, io::TexturedFormat::glb);
+  const fs::path written = fs::path(path).replace_extension(".glb");
+  if (written != path) fs::rename(written, path);
+}
+
+// The copy has its own order of vertices and faces. Large textures, with copies of a picture, are
+// not copied, because that takes too long.
 void read_glb_file(const fs::path& file) {
-  const auto read = [](const fs::path& path) { return io::read_textured_glb(path); };
+  ask_of_mesh(file);
+  const auto read = [](const fs::path& path) { return io::read_textured_gltf(path); };
   const TexturedMesh mesh = read(file);
+  for (const cv::Mat3b& texture : mesh.textures)
+    if (texture.total() > (1u << 16)) return;
   const TexturedMesh again =
-      read_copy(mesh, file, read, [](const fs::path& path, const TexturedMesh& value) {
-        io::write_textured_mesh(path, value, io::TexturedFormat::glb);
-      });
+      read_copy(mesh, file, read,
+                [](const fs::path& path, const TexturedMesh& value) { write_glb(path, value); });
   require(again.mesh.faces.size() == mesh.mesh.faces.size(), "the copy has other faces");
 }
 
@@ -94,7 +116,83 @@ void read_obj_file(const fs::path& file) {
                             io::TexturedFormat::obj);
     fs::rename(file.parent_path() / "other.mtl", materials);
   }
+  ask_of_mesh(file);
   io::read_textured_obj(file);
+}
+
+// An OBJ that uses the first material of the file.
+void read_mtl_file(const fs::path& file) {
+  io::write_textured_mesh(file.parent_path() / "other.ply", small_textured(1),
+                          io::TexturedFormat::ply);
+  const fs::path obj = file.parent_path() / "mesh.obj";
+  write_atomically(obj,
+                   "mtllib mesh.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 2 0\n"
+                   "vt 0 1\nf 1/1 2/2 3/3\n");
+  io::read_textured_obj(obj);
+}
+
+bool write_mtl_seed(const fs::path& file, int variant) {
+  constexpr std::array kSeeds{
+      "newmtl a\nKd 0.5 0.5 1\nmap_Kd other0.png\n",
+      "# made by hand\r\nnewmtl a\r\nmap_Kd -s 2 0.5 -o 0.25 0 0 \\\r\n -clamp on OTHER0.PNG\r\n",
+      "newmtl a\nKd 1\nnewmtl b\nmap_kd -bm 1 -mm 0 1 -blendu off .\\textures\\other0.png\n"};
+  const auto seed = static_cast<std::size_t>(variant);
+  if (seed < kSeeds.size()) write_atomically(file, kSeeds[seed]);
+  return seed < kSeeds.size();
+}
+
+// Features that the program's own files do not have.
+bool write_obj_seed(const fs::path& file, int variant) {
+  if (variant < 2) {
+    io::write_textured_mesh(file, small_textured(static_cast<std::size_t>(variant + 1)),
+                            io::TexturedFormat::obj);
+    return true;
+  }
+  write_atomically(
+      file,
+      "# geo_offset 500000 4e6 2\nusemtl material_0\nf -3/-3/1 -2/-2/1 -1/-1/1\n"
+      "mtllib mesh.mtl\nv 0 0 0 1 0.5 0\nv 1 0 0 0 0 1\nv 0 1 0 0 1 0\nvt 0.5\n"
+      "vt 1 1 0\nvt 2 -1\nvn 0 0 1\ng part\nf 1/1 2/2 \\\n 3/3 # end\nusemtl\nf 1 2 3\n");
+  return variant < 3;
+}
+
+// Nodes with transformations, a strip, colours, a sparse accessor, a moved texture in a data URI.
+test::GltfBuilder varied_gltf() {
+  test::GltfBuilder builder;
+  nlohmann::json& primitive = builder.mesh({{"POSITION", builder.positions(test::kTriangle)},
+                                            {"TEXCOORD_0", builder.uv({0, 0, 2, 0, 0, 1})}});
+  primitive["mode"] = 5;
+  primitive["indices"] = builder.indices({0, 1, 2});
+  const std::size_t places = builder.view(std::vector<std::uint16_t>{1});
+  const std::size_t values = builder.view(std::vector<float>{5, 0, 0});
+  builder.json["accessors"][0]["sparse"] = {
+      {"count", 1},
+      {"indices", {{"bufferView", places}, {"componentType", 5123}}},
+      {"values", {{"bufferView", values}}}};
+  builder.node({{"children", {1}}, {"translation", {1, 0, 0}}, {"rotation", {0, 0, 1, 0}}});
+  builder.added("nodes",
+                {{"mesh", 0}, {"scale", {-1, 1, 1}}, {"extras", {{"geo_offset", {1, 2, 3}}}}});
+  return builder;
+}
+
+bool write_glb_seed(const fs::path& file, int variant) {
+  if (variant < 2) {
+    write_glb(file, small_textured(static_cast<std::size_t>(variant + 1)));
+    return true;
+  }
+  test::GltfBuilder builder = varied_gltf();
+  std::vector<unsigned char> png;
+  cv::imencode(".png", cv::Mat3b(2, 2, cv::Vec3b(1, 2, 3)), png);
+  const std::string bytes(png.begin(), png.end());
+  const nlohmann::json transform{{"offset", {0.5, 0}}, {"rotation", 0.5}, {"scale", {2, 1}}};
+  builder.material({{"uri", "data:image/png;base64," + test::base64(bytes)}},
+                   {{"extensions", {{"KHR_texture_transform", transform}}}}, {{"wrapS", 33648}});
+  builder.json["meshes"][0]["primitives"][0]["material"] = 0;
+  if (variant == 2) write_atomically(file, builder.glb());
+  // The reader tells a .gltf by its content.
+  if (variant == 3)
+    write_atomically(file, builder.gltf("data:;base64," + test::base64(builder.buffer)));
+  return variant < 4;
 }
 
 // Functions that read only a part of a file.
@@ -158,11 +256,18 @@ bool write_mesh_seed(const fs::path& file, int variant) {
   return variant < 3;
 }
 
-template <io::TexturedFormat kFormat>
+constexpr const char* kTexturedVertices =
+    "ply\nformat ascii 1.0\ncomment TextureFile mesh0.png\ncomment TextureFile mesh1.png\n"
+    "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float s\n"
+    "property float t\nproperty int texnumber\nelement face 1\n"
+    "property list uchar int vertex_indices\nend_header\n0 0 1 0 0 1\n1 0 1 1 0 1\n"
+    "1 1 1 1 1 1\n0 1 1 0 1 0\n4 0 1 2 3\n";
+
 bool write_textured_seed(const fs::path& file, int variant) {
   const auto textures = static_cast<std::size_t>(variant + 1);
-  if (variant < 2) io::write_textured_mesh(file, small_textured(textures), kFormat);
-  return variant < 2;
+  if (variant < 2) io::write_textured_mesh(file, small_textured(textures), io::TexturedFormat::ply);
+  if (variant == 2) write_atomically(file, kTexturedVertices);
+  return variant < 3;
 }
 
 }  // namespace
@@ -173,12 +278,11 @@ std::span<const Reader> ply_readers() {
       Reader{"ply-mesh", "mesh.ply", read_mesh_file, write_mesh_seed},
       Reader{"ply-parts", "cloud.ply", read_parts, write_cloud_seed},
       Reader{"ply-moved", "cloud.ply", move_file, write_cloud_seed},
-      Reader{"ply-textured", "mesh.ply", read_textured_file,
-             write_textured_seed<io::TexturedFormat::ply>},
-      Reader{"textured-glb", "mesh.glb", read_glb_file,
-             write_textured_seed<io::TexturedFormat::glb>},
-      Reader{"textured-obj", "mesh.obj", read_obj_file,
-             write_textured_seed<io::TexturedFormat::obj>}};
+      Reader{"ply-textured", "mesh.ply", read_textured_file, write_textured_seed},
+      Reader{"textured-glb", "mesh.glb", read_glb_file, write_glb_seed},
+      Reader{"textured-gltf", "mesh.gltf", read_glb_file, write_glb_seed},
+      Reader{"textured-mtl", "mesh.mtl", read_mtl_file, write_mtl_seed},
+      Reader{"textured-obj", "mesh.obj", read_obj_file, write_obj_seed}};
   return kReaders;
 }
 

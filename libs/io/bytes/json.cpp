@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/bytes/json.h"
 
+#include <new>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
@@ -36,11 +37,16 @@ class DuplicateKeys {
 
 Json read_json(const std::filesystem::path& path) {
   constexpr std::uintmax_t kLargest = 256u << 20;
-  const std::string bytes = read_file(path, kLargest);
+  return parse_json(read_file(path, kLargest), path.string());
+}
+
+Json parse_json(std::string_view text, const std::string& name) {
   try {
-    return Json::parse(bytes, DuplicateKeys());
+    return Json::parse(text, DuplicateKeys());
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
-    fail("{}: malformed JSON: {}", path.string(), error.what());
+    fail("{}: malformed JSON: {}", name, error.what());
   }
 }
 

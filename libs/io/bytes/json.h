@@ -14,6 +14,11 @@ namespace axial::io {
 // MiB, contains malformed JSON, or contains a key twice in one object.
 nlohmann::json read_json(const std::filesystem::path& path);
 
+// Parses a JSON text that is a part of the file `name`. Throws an Error that begins with `name` for
+// malformed JSON, more than 1,000 lists or objects inside one another, or a key that an object
+// contains twice.
+nlohmann::json parse_json(std::string_view text, const std::string& name);
+
 // Writes `json` indented, with a newline at the end. The file is written completely or not at all.
 // Throws an Error that names the file if it cannot be written, or if a text in `json` is not UTF-8.
 void write_json(const std::filesystem::path& path, const nlohmann::json& json);

@@ -8,6 +8,7 @@
 #include "base/heap_bytes.h"
 #include "base/log.h"
 #include "io/ply/ply.h"
+#include "io/textured/textured_mesh.h"
 #include "private/ply/ply_header.h"
 
 namespace axial::io {
@@ -29,9 +30,9 @@ SparsePoint sparse_point(const PointCloud& cloud, std::size_t i, std::size_t ima
 }
 
 // Whether the positions of the file are in `frame` though the file does not say so.
-bool is_silently_in(const LocalFrame& frame, const std::filesystem::path& ply) {
+bool is_silently_in(const LocalFrame& frame, const std::filesystem::path& file) {
   if (frame.is_world()) return false;
-  const PlyPlace place = ply_place(ply);
+  const MeshPlace place = mesh_place(file);
   const bool says_where = !place.frame.is_world();
   const Eigen::Vector3d& first = place.first_vertex;
   return !says_where && first.norm() < frame.to_local(first).norm();
@@ -48,8 +49,8 @@ void read_cloud_of_scene_in_portions(const LocalFrame& frame, const std::filesys
   read_cloud_portions(ply, is_silently_in(frame, ply) ? nullptr : &frame, points, sink);
 }
 
-Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& ply) {
-  return is_silently_in(frame, ply) ? read_mesh_ply(ply) : read_mesh_ply(ply, frame);
+Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& mesh) {
+  return is_silently_in(frame, mesh) ? read_shape(mesh) : read_shape(mesh, frame);
 }
 
 void use_point_cloud(Scene& scene, const LocalFrame& frame, const std::filesystem::path& ply) {
@@ -122,13 +123,6 @@ std::uint64_t cloud_bytes(const PlyCounts& cloud) {
 std::uint64_t bytes_to_read_cloud(const std::filesystem::path& ply) {
   const std::optional<PlyCounts> cloud = count_ply(ply);
   return cloud ? cloud->file_bytes + cloud_bytes(*cloud) : 0;
-}
-
-std::uint64_t bytes_to_read_mesh(const std::filesystem::path& ply) {
-  std::error_code error;
-  const std::uintmax_t file = std::filesystem::file_size(ply, error);
-  // A mesh is at most as large as its binary file, and at most twice as large as its text.
-  return error ? 0 : 3 * file;
 }
 
 std::optional<PointSourceCounts> count_point_cloud(const std::filesystem::path& ply,

@@ -16,18 +16,18 @@
 
 namespace axial::io {
 
-// Read the PLY file of a cloud or a mesh that belongs to a scene in `frame`. The positions of the
-// result are in `frame`.
+// Read a cloud (PLY) or a mesh (PLY, OBJ, GLB or glTF: read_shape() in io/textured) that belongs to
+// a scene in `frame`. The positions of the result are in `frame`.
 //
-// If the file has a comment geo_offset, the point in this comment is the origin of the stored
-// positions. A comment geo_offset 0 0 0 counts as no comment. Without a comment the frame of the
-// stored positions is guessed, because OpenMVS's programs write coordinates in the frame of their
-// input but drop the comment geo_offset. The guess is the world or `frame`, whichever has its
-// origin nearer to the first vertex.
+// If the file has a comment geo_offset (in glTF, a key geo_offset), the point in this comment is
+// the origin of the stored positions. A comment geo_offset 0 0 0 counts as no comment. Without a
+// comment the frame of the stored positions is guessed, because OpenMVS's programs write
+// coordinates in the frame of their input but drop the comment geo_offset. The guess is the world
+// or `frame`, whichever has its origin nearer to the first vertex.
 //
-// Errors as for read_cloud_ply and read_mesh_ply.
+// Errors as for read_cloud_ply and read_shape.
 PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
-Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
+Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& mesh);
 
 // Reads a cloud of any size in portions (read_cloud_portions() in io/ply/ply.h), with the positions
 // of read_cloud_of_scene().
@@ -36,10 +36,12 @@ void read_cloud_of_scene_in_portions(const LocalFrame& frame, const std::filesys
 
 // Estimates of the memory [bytes] that read_cloud_of_scene() and read_mesh_of_scene() need, with
 // their result. The estimate for a cloud is made from the size and the header of the file, and is 0
-// if the header cannot be read or does not fit the size. The estimate for a mesh is made from the
-// size alone, and is 0 if the size cannot be found.
+// if the header cannot be read or does not fit the size. The estimate for a mesh is an upper bound
+// that includes texture coordinates, and is 0 if the size cannot be found. For a PLY it is made
+// from the size alone; the lines of an OBJ and the JSON part of a glTF are read for it. Error that
+// names the file for a malformed glTF.
 std::uint64_t bytes_to_read_cloud(const std::filesystem::path& ply);
-std::uint64_t bytes_to_read_mesh(const std::filesystem::path& ply);
+std::uint64_t bytes_to_read_mesh(const std::filesystem::path& mesh);
 
 // Replaces the sparse points of `scene`, with their normals and colours, by the cloud of
 // read_cloud_of_scene(). `scene` is in `frame`. The cloud must have the property view_indices,

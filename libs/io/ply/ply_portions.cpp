@@ -60,8 +60,10 @@ PlyPlace ply_place(const std::filesystem::path& path) {
 
 bool ply_has_faces(const std::filesystem::path& path) {
   const PlyStream stream(path);
-  const PlyElement* faces = find_element(stream.header(), "face");
-  return faces && faces->count > 0;
+  for (const char* name : {"face", "tristrips"})
+    if (const PlyElement* faces = find_element(stream.header(), name); faces && faces->count > 0)
+      return true;
+  return false;
 }
 
 }  // namespace axial::io

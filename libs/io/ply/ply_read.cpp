@@ -44,6 +44,34 @@ void read_faces(PlyBody& body, const PlyElement& element, const std::string& fil
   }
 }
 
+// Strips of triangles, as the models of the Stanford repository have them. -1 ends a strip. Every
+// second triangle of a strip has its corners in the opposite order.
+void read_strips(PlyBody& body, const PlyElement& element, const std::string& file, Mesh& mesh) {
+  body.require_rows(element);
+  const std::size_t corners_at = find_property(element, "vertex_indices", true);
+  std::vector<double> corners;
+  for (std::size_t i = 0; i < element.count; ++i) {
+    for (std::size_t p = 0; p < element.properties.size(); ++p)
+      if (const PlyProperty& property = element.properties[p]; property.is_list)
+        read_list(body, property, p == corners_at ? &corners : nullptr);
+      else
+        body.scalar(property.type, property.name);
+    std::vector<std::uint32_t> strip;
+    for (const double corner : corners) {
+      if (corner == -1) {
+        strip.clear();
+        continue;
+      }
+      strip.push_back(as_index(corner, "vertex_indices", i, file));
+      const std::size_t n = strip.size();
+      if (n < 3) continue;
+      const std::uint32_t a = strip[n - 3], b = strip[n - 2], c = strip[n - 1];
+      if (a == b || b == c || c == a) continue;
+      mesh.faces.push_back(n % 2 == 1 ? std::array{a, b, c} : std::array{b, a, c});
+    }
+  }
+}
+
 void check_faces(const Mesh& mesh, const std::string& file) {
   for (const auto& face : mesh.faces)
     for (const std::uint32_t corner : face)
@@ -74,7 +102,8 @@ Mesh read_mesh(const std::filesystem::path& path, const LocalFrame* frame) {
   const std::string bytes = read_file(path);
   const PlyHeader header = parse_ply_header(bytes, file);
   if (!find_element(header, "vertex")) fail("{}: has no element vertex", file);
-  if (!find_element(header, "face")) fail("{}: is not a mesh: it has no element face", file);
+  if (!find_element(header, "face") && !find_element(header, "tristrips"))
+    fail("{}: is not a mesh: it has no element face", file);
   PlyBody body(bytes, file, header);
   Mesh mesh;
   for (const PlyElement& element : header.elements) {
@@ -84,6 +113,8 @@ Mesh read_mesh(const std::filesystem::path& path, const LocalFrame* frame) {
       mesh.colors = std::move(cloud.colors);
     } else if (&element == find_element(header, "face")) {
       read_faces(body, element, file, mesh);
+    } else if (&element == find_element(header, "tristrips")) {
+      read_strips(body, element, file, mesh);
     } else {
       skip_rows(body, element);
     }

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <fstream>
 #include <map>
 #include <string>
 #include <utility>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "io/images/image.h"
 #include "io/textured/textured_mesh.h"
-#include "private/bytes/text_reader.h"
+#include "private/textured/obj_materials.h"
 #include "private/textured/textured_readers.h"
 
 namespace axial::io {
@@ -16,63 +18,103 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Calls visit(material, file) for each texture of an MTL file.
-template <class Visit>
-void for_each_texture(const fs::path& mtl, const Visit& visit) {
-  const std::string bytes = read_file(mtl);
-  TextReader reader(bytes, mtl.string());
-  std::string material;
-  while (std::optional<TextLine> line = reader.line()) {
-    if (line->empty()) continue;
-    const std::string_view key = line->word("key");
-    if (key == "newmtl") material = line->rest();
-    if (key == "map_Kd") visit(material, mtl.parent_path() / line->rest());
-  }
+// How many items the lines of an OBJ declare. `faces` is an upper bound of the triangles.
+struct ObjCounts {
+  std::uint64_t vertices = 0, colors = 0, coordinates = 0, faces = 0;
+};
+
+std::uint64_t count_words(std::string_view line) {
+  std::uint64_t words = 0;
+  while (!take_token(line).empty()) ++words;
+  return words;
 }
+
+ObjCounts count_obj_items(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  ObjCounts counts;
+  bool face_goes_on = false;
+  for (std::string line; std::getline(in, line);) {
+    const std::string_view text = trimmed(line);
+    std::string_view rest = text;
+    const std::string_view key = take_token(rest);
+    const bool is_face = key == "f" || key == "fo";
+    counts.vertices += key == "v";
+    counts.colors += key == "v" && counts.colors < counts.vertices && count_words(rest) > 3;
+    counts.coordinates += key == "vt";
+    if (is_face) counts.faces += std::max<std::uint64_t>(count_words(text), 3) - 3;
+    if (!is_face && face_goes_on) counts.faces += count_words(text);
+    face_goes_on = (is_face || face_goes_on) && text.ends_with('\\');
+  }
+  return counts;
+}
+
+enum class ObjParts { shape, textured, sizes };  // sizes: textured, without decoding pictures
 
 class ObjReader {
  public:
-  // `textured`: false to read vertices and faces only.
-  ObjReader(const fs::path& path, bool textured) : path_(path), textured_(textured) {}
+  ObjReader(const fs::path& path, ObjParts parts)
+      : path_(path),
+        file_(path.string()),
+        textured_(parts != ObjParts::shape),
+        textures_(file_, parts == ObjParts::textured) {}
 
   TexturedMesh read(const std::optional<LocalFrame>& frame) {
     const std::string bytes = read_file(path_);
-    TextReader reader(bytes, path_.string());
-    while (std::optional<TextLine> line = reader.line()) read_line(*line);
-    if (result_.mesh.faces.empty()) fail("{}: the mesh has no faces", path_.string());
-    result_.mesh.vertices = placed_in(frame, positions_, offset_, path_.string());
+    make_room(count_obj_items(path_));
+    read_points(bytes);
+    read_faces(bytes);
+    if (result_.mesh.faces.empty()) fail("{}: the mesh has no faces", file_);
+    result_.mesh.vertices = placed_in(frame, positions_, offset_, file_);
+    if (!textured_) result_.mesh.colors = vertex_colors();
+    textures_.finish(result_);
     return std::move(result_);
   }
+
+  const TextureSet& textures() const { return textures_; }
 
  private:
   struct Corner {
     std::uint32_t vertex = 0;
-    Eigen::Vector2d uv{0, 0};
+    std::optional<std::size_t> uv;
   };
 
-  void read_line(TextLine line) {
-    if (line.empty()) return;
-    const std::string_view key = line.word("key");
-    if (key == "v") {
-      positions_.push_back(read_vector(line));
-    } else if (key == "f") {
-      read_face(line);
-    } else if (key == "#" && line.rest().starts_with("geo_offset ")) {
-      line.word("geo_offset");
-      offset_ = read_vector(line);
-    } else if (textured_) {
-      read_texture_line(key, line);
-    }
+  // A material, and its texture if a face or a picture needs it.
+  struct UsedMaterial {
+    ObjMaterial material;
+    std::optional<std::uint32_t> texture;
+  };
+
+  void make_room(const ObjCounts& counts) {
+    if (counts.vertices > 0xFFFFFFFFu) fail("{}: has {} vertices", file_, counts.vertices);
+    positions_.reserve(counts.vertices);
+    if (!textured_ && counts.colors == counts.vertices) colors_.reserve(counts.vertices);
+    result_.mesh.faces.reserve(counts.faces);
+    if (!textured_) return;
+    uv_.reserve(counts.coordinates);
+    result_.uv.reserve(counts.faces);
+    result_.texture_of.reserve(counts.faces);
   }
 
-  void read_texture_line(std::string_view key, TextLine& line) {
-    if (key == "vt") {
-      const auto u = line.number<double>("u");
-      uv_.emplace_back(u, line.number<double>("v"));
-    } else if (key == "usemtl") {
-      texture_ = texture_of(line);
-    } else if (key == "mtllib") {
-      read_materials(path_.parent_path() / line.rest());
+  // Vertices, texture coordinates and materials: faces may refer to later lines.
+  void read_points(const std::string& bytes) {
+    ObjLines lines(bytes, file_);
+    while (std::optional<TextLine> line = lines.next()) {
+      const std::string_view key = line->word("key");
+      if (key == "v") {
+        read_vertex(lines.without_comment(*line));
+      } else if (key == "#" && line->rest().starts_with("geo_offset ")) {
+        line->word("geo_offset");
+        offset_ = read_vector(*line);
+      } else if (textured_ && key == "vt") {
+        TextLine values = lines.without_comment(*line);
+        const auto u = values.number<double>("u");
+        uv_.emplace_back(u, values.empty() ? 0.0 : values.number<double>("v"));
+      } else if (textured_ && key == "mtllib") {
+        for (const fs::path& mtl : material_files(path_.parent_path(), line->rest()))
+          add_materials(mtl);
+      } else if (key == "surf" || key == "call") {
+        fail("{}: '{}' is not supported", line->where(), key);
+      }
     }
   }
 
@@ -82,69 +124,131 @@ class ObjReader {
     return vector;
   }
 
-  // The item of a list of `count` items that `word` names by its number, which counts from 1.
-  static std::size_t index(std::string_view word, std::size_t count, const TextLine& line,
-                           const char* list) {
-    const auto number = parse_number<std::size_t>(word);
-    if (!number || *number < 1 || *number > count)
-      fail("{}: the {} '{}' does not exist; there are {} so far", line.where(), list, word, count);
-    return *number - 1;
+  // x y z, then nothing, a weight, or red, green and blue.
+  void read_vertex(TextLine line) {
+    positions_.push_back(read_vector(line));
+    if (textured_ || line.empty() || colors_.size() + 1 != positions_.size()) return;
+    Eigen::Vector3f color;
+    for (int k = 0; k < 3; ++k) {
+      if (line.empty()) return;
+      const auto value = parse_finite<float>(line.word("a colour"));
+      if (!value) return;
+      color[k] = *value;
+    }
+    colors_.push_back(color);
   }
 
+  // Colours are from 0 to 1. A few programs write 0 to 255.
+  std::vector<Rgb> vertex_colors() const {
+    std::vector<Rgb> result;
+    if (colors_.size() != positions_.size()) return result;
+    float largest = 0;
+    for (const Eigen::Vector3f& color : colors_) largest = std::max(largest, color.maxCoeff());
+    const float scale = largest > 1 ? 1.0f : 255.0f;
+    result.reserve(colors_.size());
+    for (const Eigen::Vector3f& color : colors_) {
+      Rgb& rgb = result.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k)
+        rgb[k] = static_cast<std::uint8_t>(
+            std::lround(std::clamp(scale * color[static_cast<Eigen::Index>(k)], 0.0f, 255.0f)));
+    }
+    return result;
+  }
+
+  void add_materials(const fs::path& mtl) {
+    for (ObjMaterial& material : read_obj_materials(mtl)) {
+      UsedMaterial used{std::move(material), {}};
+      if (used.material.texture) used.texture = textures_.add(*used.material.texture);
+      materials_[used.material.name] = std::move(used);
+    }
+  }
+
+  void read_faces(const std::string& bytes) {
+    ObjLines lines(bytes, file_);
+    while (std::optional<TextLine> line = lines.next()) {
+      const std::string_view key = line->word("key");
+      vertices_ += key == "v";
+      coordinates_ += key == "vt";
+      if (key == "f" || key == "fo") read_face(lines.without_comment(*line));
+      if (textured_ && key == "usemtl") use_material(*line);
+    }
+  }
+
+  // The item of a list of `all` items that `word` names. Positive numbers count from 1. Negative
+  // numbers count back from the last of the `so_far` items before the line.
+  static std::size_t index(std::string_view word, std::size_t all, std::size_t so_far,
+                           const TextLine& line, const char* list) {
+    const auto number = parse_number<std::int64_t>(word);
+    const std::int64_t at = !number       ? -1
+                            : *number < 0 ? static_cast<std::int64_t>(so_far) + *number
+                                          : *number - 1;
+    if (at < 0 || static_cast<std::uint64_t>(at) >= all)
+      fail("{}: the {} '{}' does not exist; there are {}", line.where(), list, word, all);
+    return static_cast<std::size_t>(at);
+  }
+
+  // v, v/vt, v//vn or v/vt/vn.
   Corner read_corner(std::string_view word, const TextLine& line) const {
     const std::size_t slash = word.find('/');
     Corner corner;
-    corner.vertex =
-        static_cast<std::uint32_t>(index(word.substr(0, slash), positions_.size(), line, "vertex"));
-    if (!textured_) return corner;
-    if (slash == std::string_view::npos)
-      fail("{}: the corner '{}' has no texture coordinate", line.where(), word);
+    corner.vertex = static_cast<std::uint32_t>(
+        index(word.substr(0, slash), positions_.size(), vertices_, line, "vertex"));
+    if (!textured_ || slash == std::string_view::npos) return corner;
     const std::string_view rest = word.substr(slash + 1);
-    corner.uv = uv_[index(rest.substr(0, rest.find('/')), uv_.size(), line, "texture coordinate")];
+    const std::string_view uv = rest.substr(0, rest.find('/'));
+    if (!uv.empty()) corner.uv = index(uv, uv_.size(), coordinates_, line, "texture coordinate");
     return corner;
   }
 
-  void read_face(TextLine& line) {
-    if (textured_ && !texture_) fail("{}: the face has no material with a texture", line.where());
+  void read_face(TextLine line) {
     const Corner first = read_corner(line.word("corner"), line);
     Corner second = read_corner(line.word("corner"), line);
     do {
       const Corner third = read_corner(line.word("corner"), line);
       result_.mesh.faces.push_back({first.vertex, second.vertex, third.vertex});
-      if (textured_) add_uv({first.uv, second.uv, third.uv}, line);
+      if (textured_) add_uv({first, second, third}, line);
       second = third;
     } while (!line.empty());
   }
 
-  void add_uv(const std::array<Eigen::Vector2d, 3>& corners, const TextLine& line) {
-    const cv::Size size = result_.textures[*texture_].size();
-    const auto& uv = result_.uv.emplace_back(TexturedMesh::Corners{
-        pixel_of(corners[0], size), pixel_of(corners[1], size), pixel_of(corners[2], size)});
-    for (const Eigen::Vector2f& corner : uv)
-      if (!corner.allFinite()) fail("{}: a texture coordinate is too large", line.where());
-    result_.texture_of.push_back(*texture_);
+  void add_uv(const std::array<Corner, 3>& corners, const TextLine& line) {
+    UsedMaterial& used = *material_;
+    std::array<Eigen::Vector2d, 3> uv{{{0, 0}, {1, 0}, {0, 1}}};
+    if (used.material.texture) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (!corners[k].uv) fail("{}: a corner has no texture coordinate", line.where());
+        uv[k] = used.material.scale.cwiseProduct(uv_[*corners[k].uv]) + used.material.offset;
+      }
+    } else if (!used.texture) {
+      used.texture = textures_.add(texture_of_color(used.material.color));
+    }
+    result_.uv.push_back(textures_.place(*used.texture, uv, line.where() + ": the face"));
+    result_.texture_of.push_back(*used.texture);
   }
 
-  std::uint32_t texture_of(const TextLine& line) const {
-    const auto material = materials_.find(std::string(line.rest()));
-    if (material == materials_.end())
-      fail("{}: there is no material '{}' with a texture", line.where(), line.rest());
-    return material->second;
-  }
-
-  void read_materials(const fs::path& path) {
-    for_each_texture(path, [&](const std::string& material, const fs::path& texture) {
-      materials_[material] = static_cast<std::uint32_t>(result_.textures.size());
-      result_.textures.push_back(read_color_image(texture));
-    });
+  void use_material(const TextLine& line) {
+    const std::string name(line.rest());
+    if (name.empty()) {
+      material_ = &white_;
+      return;
+    }
+    const auto found = materials_.find(name);
+    if (found == materials_.end())
+      fail("{}: there is no material '{}' in its MTL files", line.where(), name);
+    material_ = &found->second;
   }
 
   fs::path path_;
+  std::string file_;
   bool textured_;
+  TextureSet textures_;
   std::vector<Eigen::Vector3d> positions_;
+  std::vector<Eigen::Vector3f> colors_;
   std::vector<Eigen::Vector2d> uv_;
-  std::map<std::string, std::uint32_t> materials_;  // the texture of each material that has one
-  std::optional<std::uint32_t> texture_;            // of the next faces
+  std::map<std::string, UsedMaterial> materials_;
+  UsedMaterial white_;                          // the format's material of faces without one
+  UsedMaterial* material_ = &white_;            // of the next faces
+  std::size_t vertices_ = 0, coordinates_ = 0;  // before the line that is read
   std::optional<Eigen::Vector3d> offset_;
   TexturedMesh result_;
 };
@@ -152,23 +256,78 @@ class ObjReader {
 }  // namespace
 
 TexturedMesh read_textured_obj(const fs::path& path, const std::optional<LocalFrame>& frame) {
-  return ObjReader(path, true).read(frame);
+  return ObjReader(path, ObjParts::textured).read(frame);
 }
 
 Mesh read_shape_obj(const fs::path& path, const std::optional<LocalFrame>& frame) {
-  return std::move(ObjReader(path, false).read(frame).mesh);
+  return std::move(ObjReader(path, ObjParts::shape).read(frame).mesh);
+}
+
+std::uint64_t bytes_of_obj_textures(const fs::path& path) {
+  ObjReader reader(path, ObjParts::sizes);
+  reader.read({});
+  return reader.textures().bytes();
+}
+
+std::uint64_t bytes_to_read_obj(const fs::path& path) {
+  std::error_code error;
+  const std::uintmax_t file = fs::file_size(path, error);
+  if (error) return 0;
+  const ObjCounts counts = count_obj_items(path);
+  constexpr std::uint64_t kVertex =
+      sizeof(Eigen::Vector3d) + 2 * sizeof(Eigen::Vector3f) + sizeof(Rgb);
+  constexpr std::uint64_t kFace = 12 + sizeof(TexturedMesh::Corners) + 4;
+  return file + kVertex * counts.vertices + sizeof(Eigen::Vector2d) * counts.coordinates +
+         kFace * counts.faces;
+}
+
+bool is_textured_obj(const fs::path& path) {
+  const std::string bytes = read_file(path);
+  ObjLines lines(bytes, path.string());
+  bool coordinates = false, textures = false;
+  while (std::optional<TextLine> line = lines.next()) {
+    const std::string_view key = line->word("key");
+    coordinates |= key == "vt";
+    if (key != "mtllib") continue;
+    for (const fs::path& mtl : material_files(path.parent_path(), line->rest()))
+      for (const ObjMaterial& material : read_obj_materials(mtl))
+        textures |= material.texture.has_value();
+  }
+  return coordinates && textures;
+}
+
+MeshPlace place_of_obj(const fs::path& path) {
+  const std::string bytes = read_file(path);
+  ObjLines lines(bytes, path.string());
+  MeshPlace place;
+  place.is_float = false;
+  bool has_first = false;
+  while (std::optional<TextLine> line = lines.next()) {
+    const std::string_view key = line->word("key");
+    const bool is_offset = key == "#" && line->rest().starts_with("geo_offset ");
+    if (!is_offset && (key != "v" || has_first)) continue;
+    if (is_offset) line->word("geo_offset");
+    Eigen::Vector3d& vector = is_offset ? place.frame.origin : place.first_vertex;
+    for (double& value : vector) value = line->number<double>("a coordinate");
+    has_first |= !is_offset;
+  }
+  place.first_vertex += place.frame.origin;
+  return place;
 }
 
 TextureFiles texture_files_of_obj(const fs::path& path) {
   const std::string bytes = read_file(path);
-  TextReader reader(bytes, path.string());
+  ObjLines lines(bytes, path.string());
   TextureFiles files;
-  while (std::optional<TextLine> line = reader.line()) {
-    if (line->empty() || line->word("key") != "mtllib") continue;
-    files.materials.push_back(path.parent_path() / line->rest());
-    for_each_texture(files.materials.back(), [&](const std::string&, const fs::path& texture) {
-      files.textures.push_back(texture);
-    });
+  while (std::optional<TextLine> line = lines.next()) {
+    if (line->word("key") != "mtllib") continue;
+    for (const fs::path& mtl : material_files(path.parent_path(), line->rest())) {
+      files.materials.push_back(mtl);
+      std::error_code ignored;
+      if (!fs::exists(mtl, ignored)) continue;
+      for (const ObjMaterial& material : read_obj_materials(mtl))
+        if (material.texture) files.textures.push_back(material.texture->file);
+    }
   }
   return files;
 }

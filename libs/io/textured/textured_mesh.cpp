@@ -131,29 +131,35 @@ std::uint64_t bytes_to_write_textured(TexturedFormat format, std::uint64_t verti
 void write_textured_mesh(const fs::path& path, const TexturedMesh& mesh, TexturedFormat format,
                          const LocalFrame& frame) {
   const std::vector<fs::path> files = textured_files(path, format, mesh.textures.size());
+  write_together(files, [&](const std::vector<fs::path>& temporaries) {
+    write_textured_as(temporaries, path, mesh, format, frame);
+  });
+}
+
+void write_textured_as(std::span<const fs::path> temporaries, const fs::path& path,
+                       const TexturedMesh& mesh, TexturedFormat format, const LocalFrame& frame) {
+  const std::vector<fs::path> files = textured_files(path, format, mesh.textures.size());
   const std::string file = files.front().string();
   check(mesh, file);
   const std::size_t before = files_before_textures(format);
   const std::vector<std::string> textures = names_of(std::span(files).subspan(before));
-  write_together(files, [&](const std::vector<fs::path>& temporaries) {
-    for (std::size_t k = before; k < files.size(); ++k)
-      write_bytes(temporaries[k], png_bytes(mesh.textures[k - before], file));
-    if (format == TexturedFormat::ply)
-      return write_bytes(temporaries[0], textured_ply(mesh, textures, frame));
-    if (format == TexturedFormat::obj) {
-      write_bytes(temporaries[1], textured_mtl(textures));
-      return write_bytes(temporaries[0], textured_obj(mesh, files[1].filename().string(), frame));
-    }
-    if (format == TexturedFormat::gltf) {
-      const GltfFiles gltf = textured_gltf(mesh, textures, files[1].filename().string(), frame);
-      write_bytes(temporaries[1], gltf.buffer);
-      return write_bytes(temporaries[0], gltf.json);
-    }
-    std::vector<Bytes> pngs;
-    for (const cv::Mat3b& texture : mesh.textures) pngs.push_back(png_bytes(texture, file));
-    write_file(temporaries[0],
-               [&](std::ostream& out) { write_textured_glb(out, mesh, std::move(pngs), frame); });
-  });
+  for (std::size_t k = before; k < files.size(); ++k)
+    write_bytes(temporaries[k], png_bytes(mesh.textures[k - before], file));
+  if (format == TexturedFormat::ply)
+    return write_bytes(temporaries[0], textured_ply(mesh, textures, frame));
+  if (format == TexturedFormat::obj) {
+    write_bytes(temporaries[1], textured_mtl(textures));
+    return write_bytes(temporaries[0], textured_obj(mesh, files[1].filename().string(), frame));
+  }
+  if (format == TexturedFormat::gltf) {
+    const GltfFiles gltf = textured_gltf(mesh, textures, files[1].filename().string(), frame);
+    write_bytes(temporaries[1], gltf.buffer);
+    return write_bytes(temporaries[0], gltf.json);
+  }
+  std::vector<Bytes> pngs;
+  for (const cv::Mat3b& texture : mesh.textures) pngs.push_back(png_bytes(texture, file));
+  write_file(temporaries[0],
+             [&](std::ostream& out) { write_textured_glb(out, mesh, std::move(pngs), frame); });
 }
 
 namespace {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files of textured meshes: PLY as OpenMVS and MeshLab write it, OBJ with MTL, and glTF 2.0.
+// Files of meshes, with textures or without: PLY as OpenMVS and MeshLab write it, OBJ with MTL, and
+// glTF 2.0.
 #pragma once
 
 #include <cstdint>
@@ -55,71 +56,103 @@ std::vector<std::filesystem::path> textured_files(const std::filesystem::path& p
 void write_textured_mesh(const std::filesystem::path& path, const TexturedMesh& mesh,
                          TexturedFormat format, const LocalFrame& frame = {});
 
+// Writes the files of write_textured_mesh() under the names `temporaries`, for a caller that
+// renames them to textured_files(path, format, textures) together with other files. Errors as for
+// write_textured_mesh().
+void write_textured_as(std::span<const std::filesystem::path> temporaries,
+                       const std::filesystem::path& path, const TexturedMesh& mesh,
+                       TexturedFormat format, const LocalFrame& frame = {});
+
 // An upper bound of the memory [bytes] that write_textured_mesh() needs besides the mesh and its
 // textures.
 std::uint64_t bytes_to_write_textured(TexturedFormat format, std::uint64_t vertices,
                                       std::uint64_t faces, std::span<const cv::Size> textures);
 
-// Reads a textured PLY and the textures beside it. Positions are returned as stored if `frame` is
+// Readers of textured meshes, one for each format. Positions are returned as stored if `frame` is
 // empty, and otherwise in `frame`, as by read_mesh_ply() (ply.h). Texture coordinates are returned
-// in pixels, as in TexturedMesh. Error that names the file for a file without a comment
-// TextureFile, a face that is not a triangle, a face without texcoord, a texture that is missing or
-// cannot be read, or an index out of range. Other errors as for read_mesh_ply.
+// in pixels, as in TexturedMesh. Coordinates outside of 0 to 1 follow the wrapping of their format
+// (PLY: the edge of the texture; OBJ: repeated, or the edge with -clamp; glTF: the sampler). A face
+// that extends over several copies of its picture gets a texture with these copies, up to 2^26
+// pixels in all. Errors name the file.
+
+// A PLY has its textures in comments TextureFile, and coordinates at the corners of faces (the list
+// texcoord, and texnumber for the number of the texture) or at vertices (texture_u and texture_v, u
+// and v, or s and t). Polygons are split into fans. Error for a file without TextureFile or
+// coordinates, a list texcoord of another length than the face, a texture that cannot be read, or
+// an index out of range. Other errors as for read_mesh_ply.
 TexturedMesh read_textured_ply(const std::filesystem::path& path,
                                const std::optional<LocalFrame>& frame = {});
 
-// Reads an OBJ, its MTL files and their textures. Faces with more than three corners are split into
-// a fan of triangles. Vertices keep their order. Positions are treated as in read_textured_ply; a
-// comment "# geo_offset X Y Z" states their origin. Error that names the file and the line for a
-// number that is malformed or not finite, an index out of range (indices count from 1 and must not
-// be negative), a corner without texture coordinate, or a face whose material has no texture
-// (map_Kd). Error for a mesh without faces and for a texture that cannot be read.
+// An OBJ with its MTL files and the pictures of map_Kd, with the options -o, -s and -clamp. Faces
+// of a material without map_Kd get a texture of its colour Kd; faces without a material are white.
+// Kd has no effect on pictures. Faces with more than three corners are split into a fan of
+// triangles. Vertices keep their order. A comment "# geo_offset X Y Z" states the origin of
+// positions. Error that names the line for a number that is malformed or not finite, an index out
+// of range, a corner without texture coordinate on a face with a picture, or a material that no MTL
+// file has. Error for a mesh without faces and for a picture that cannot be read.
 TexturedMesh read_textured_obj(const std::filesystem::path& path,
                                const std::optional<LocalFrame>& frame = {});
 
-// Reads a GLB. The triangles of all primitives of all meshes become one mesh, which has the
-// vertices of the file: where charts meet, a GLB has several vertices at the same position.
-// Positions are treated as in read_textured_ply; the key geo_offset in the extras of a node states
-// their origin. Error that names the file for a malformed file, a mesh without faces, a primitive
-// that is not made of triangles or has no position, texture coordinate or texture, a node with a
-// transformation, data outside the file, or a texture that cannot be read.
-TexturedMesh read_textured_glb(const std::filesystem::path& path,
-                               const std::optional<LocalFrame>& frame = {});
+// A glTF 2.0, .gltf or .glb. The triangles of all nodes of the default scene become one mesh, moved
+// by the transformations of their nodes, and turned round if a transformation mirrors them. The
+// mesh has the vertices of the file: where charts meet, a glTF has several vertices at the same
+// position. Textures are those of baseColorTexture, moved by KHR_texture_transform and multiplied
+// by baseColorFactor; a material without a picture gives a texture of its colour. Light, other
+// textures, points and lines have no effect. The key geo_offset in the extras of a node states the
+// origin of positions. Error for a malformed file, an extension that is required and not known,
+// data outside of their file, a mesh without faces, a primitive without position or without the
+// texture coordinates of its picture, skins, morph targets that have an effect, and a picture that
+// cannot be read.
+TexturedMesh read_textured_gltf(const std::filesystem::path& path,
+                                const std::optional<LocalFrame>& frame = {});
 
 // Returns the names of the textures of a PLY, from its comments TextureFile, in their order. A name
 // is a path that starts at the folder of the PLY. Error that names the file for a PLY with a
 // malformed header.
 std::vector<std::string> textures_of_ply(const std::filesystem::path& path);
 
-// The files that a reader of a textured mesh reads besides the file of the mesh.
+// The files that belong to a mesh besides its own file.
 struct TextureFiles {
   std::vector<std::filesystem::path> textures;
-  std::vector<std::filesystem::path> materials;  // MTL files of an OBJ
+  std::vector<std::filesystem::path> materials;  // MTL files of an OBJ, buffers of a glTF
 };
 
-// Returns the files that read_textured_mesh() reads for `path`. A GLB has none, and neither has a
-// PLY without textures. Error that names the file if the mesh or an MTL file cannot be read.
+// The functions below take a mesh of any format. The extension chooses it, in upper or lower case:
+// .obj, .glb, .gltf; other files are PLY.
+
+// Returns the files that the mesh of `path` names. An MTL file that does not exist is returned, but
+// its textures are not known. Error that names the file if the mesh or an MTL file cannot be read.
 TextureFiles texture_files_of(const std::filesystem::path& path);
 
-// The memory [bytes] that read_textured_mesh() needs for the textures of `path`, those inside of a
-// GLB included, besides bytes_to_read_mesh() (openmvs/point_source.h). Reads the headers of the
-// images, and a GLB as a whole. Errors as for texture_files_of(), and for a texture or a GLB that
-// cannot be read.
+// Returns `path` and the files of texture_files_of(): all files that an output must not replace.
+// Returns `path` alone for a mesh that cannot be read, because its reader says why.
+std::vector<std::filesystem::path> files_of_mesh(const std::filesystem::path& path);
+
+// The memory [bytes] that read_textured_mesh() needs for the textures of `path`, besides
+// bytes_to_read_mesh() (openmvs/point_source.h). Reads the headers of the pictures, and an OBJ or
+// glTF as a whole. Errors as for read_textured_mesh().
 std::uint64_t bytes_to_read_textures(const std::filesystem::path& path);
 
-// True if `path` names a textured mesh. Files with the extensions .obj and .glb, in upper or lower
-// case, count as textured meshes and are not opened. Other files are PLY, and textured if they have
-// a comment TextureFile. Error that names the file for a PLY with a malformed header.
+// True if read_textured_mesh() finds pictures: a PLY with TextureFile and texture coordinates, an
+// OBJ with texture coordinates and a material with map_Kd, a glTF whose scene has a
+// baseColorTexture. Pictures are not opened. Error that names the file if the mesh or an MTL file
+// cannot be read.
 bool is_textured_mesh(const std::filesystem::path& path);
 
-// Reads a textured mesh by one of the three functions above, which the extension of `path` chooses.
+// Reads a textured mesh of any format.
 TexturedMesh read_textured_mesh(const std::filesystem::path& path,
                                 const std::optional<LocalFrame>& frame = {});
 
-// Reads the vertices and faces of a PLY, OBJ or GLB, which the extension of `path` chooses. The
-// mesh may have no textures; if it has some, no file of them is opened. Positions are treated as in
-// read_textured_ply. Errors as for read_mesh_ply(), read_textured_obj() and read_textured_glb(),
-// except those about textures.
+// Reads the vertices and faces of a mesh of any format, and colours of vertices if the file has
+// them: red, green, blue of a PLY; numbers behind the positions of an OBJ; COLOR_0 times
+// baseColorFactor of a glTF. No picture or MTL file is opened. Positions are treated as by the
+// functions above. Errors as for read_mesh_ply() and the functions above, except errors about
+// textures.
 Mesh read_shape(const std::filesystem::path& path, const std::optional<LocalFrame>& frame = {});
+
+// Returns the place of the positions of a mesh of any format, as ply_place() does for PLY.
+// is_float is false for an OBJ, and for a glTF whose positions are moved by nodes.
+using MeshPlace = PlyPlace;
+MeshPlace mesh_place(const std::filesystem::path& path);
 
 }  // namespace axial::io

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_extension.h"
-#include "io/images/image.h"
 #include "private/bytes/byte_writer.h"
-#include "private/ply/ply_header.h"
+#include "private/ply/ply_rows.h"
+#include "private/ply/ply_stream.h"
+#include "private/textured/file_names.h"
+#include "private/textured/texture_set.h"
 #include "private/textured/textured_readers.h"
 #include "private/textured/textured_writers.h"
 
@@ -44,6 +47,36 @@ std::string textured_ply(const TexturedMesh& textured, const std::vector<std::st
 
 namespace {
 
+namespace fs = std::filesystem;
+
+// The texture coordinates at the vertices of a PLY, as MeshLab and Blender write them.
+struct VertexCoordinates {
+  std::vector<Eigen::Vector2d> uv;
+  std::vector<double> texture;  // texnumber; empty without this property
+};
+
+// The properties of texture coordinates at vertices: the first pair of names that exists.
+std::optional<std::array<std::size_t, 2>> vertex_coordinates(const PlyElement& vertex) {
+  constexpr std::array<std::array<const char*, 2>, 4> kNames{
+      {{"texture_u", "texture_v"}, {"u", "v"}, {"s", "t"}, {"texture_s", "texture_t"}}};
+  for (const auto& [u, v] : kNames) {
+    const std::array<std::size_t, 2> at{find_property(vertex, u, false),
+                                        find_property(vertex, v, false)};
+    if (at[0] != kNoProperty && at[1] != kNoProperty) return at;
+  }
+  return {};
+}
+
+bool has_face_coordinates(const PlyHeader& header) {
+  const PlyElement* face = find_element(header, "face");
+  return face && find_property(*face, "texcoord", true) != kNoProperty;
+}
+
+bool has_vertex_coordinates(const PlyHeader& header) {
+  const PlyElement* vertex = find_element(header, "vertex");
+  return vertex && vertex_coordinates(*vertex);
+}
+
 // The values of a row of faces that are of interest.
 struct FaceRow {
   std::vector<double> corners, uv;
@@ -55,117 +88,176 @@ void read_face_row(PlyBody& body, const PlyElement& element, FaceRow& row) {
     if (!property.is_list) {
       const double value = body.scalar(property.type, property.name);
       if (property.name == "texnumber") row.texture = value;
-      continue;
+    } else if (property.name == "vertex_indices" || property.name == "vertex_index") {
+      read_list(body, property, &row.corners);
+    } else {
+      read_list(body, property, property.name == "texcoord" ? &row.uv : nullptr);
     }
-    std::vector<double> values(body.list_size(property));
-    for (double& value : values) value = body.scalar(property.type, property.name);
-    if (property.name == "vertex_indices" || property.name == "vertex_index")
-      row.corners = std::move(values);
-    else if (property.name == "texcoord")
-      row.uv = std::move(values);
   }
 }
 
-void add_face(const FaceRow& row, std::size_t f, const std::string& file, TexturedMesh& result) {
-  if (row.corners.size() != 3)
-    fail("{}: face {} has {} corners, expected 3", file, f, row.corners.size());
-  if (row.uv.size() != 6)
-    fail("{}: face {} has {} numbers in texcoord, expected 6", file, f, row.uv.size());
-  if (!(row.texture >= 0 && row.texture < static_cast<double>(result.textures.size())))
-    fail("{}: face {} has texnumber {}, but there are {} textures", file, f, row.texture,
-         result.textures.size());
-  const auto texture = static_cast<std::uint32_t>(row.texture);
-  const cv::Size size = result.textures[texture].size();
-  TexturedMesh::Corners uv;
-  for (std::size_t k = 0; k < 3; ++k) {
-    uv[k] = pixel_of({row.uv[2 * k], row.uv[2 * k + 1]}, size);
-    if (!uv[k].allFinite()) fail("{}: face {} has a texcoord that is not finite", file, f);
+class TexturedPlyReader {
+ public:
+  TexturedPlyReader(const fs::path& path, const PlyHeader& header)
+      : file_(path.string()), header_(header), textures_(file_, true) {
+    for (const std::string& name : header.texture_files)
+      textures_.add(texture_from(path_beside(path.parent_path(), name)));
   }
-  result.uv.push_back(uv);
-  result.texture_of.push_back(texture);
-}
 
-// Reads the rows of the faces; the corners themselves are read by read_mesh_ply.
-void read_texture_coordinates(const std::string& bytes, const PlyHeader& header,
-                              const std::string& file, TexturedMesh& result) {
-  PlyBody body(bytes, file, header);
-  for (const PlyElement& element : header.elements) {
-    body.require_rows(element);
-    FaceRow row;
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-      row = {};
-      read_face_row(body, element, row);
-      if (element.name == "face") add_face(row, i, file, result);
-    }
-    if (element.name == "face") return;
+  TexturedMesh read(const std::string& bytes, Mesh mesh) {
+    result_.mesh = std::move(mesh);
+    result_.uv.reserve(result_.mesh.faces.size());
+    result_.texture_of.reserve(result_.mesh.faces.size());
+    if (has_face_coordinates(header_) || !has_vertex_coordinates(header_))
+      read_faces(bytes);
+    else
+      use_vertices(bytes);
+    textures_.finish(result_);
+    return std::move(result_);
   }
-}
+
+ private:
+  void add(const std::array<Eigen::Vector2d, 3>& uv, double texture, const std::string& where) {
+    const auto textures = header_.texture_files.size();
+    if (!(texture >= 0 && texture < static_cast<double>(textures)))
+      fail("{} has texnumber {}, but there are {} textures", where, texture, textures);
+    for (const Eigen::Vector2d& corner : uv)
+      if (!corner.allFinite()) fail("{} has a texcoord that is not finite", where);
+    const auto number = static_cast<std::uint32_t>(texture);
+    result_.uv.push_back(textures_.place(number, uv, where));
+    result_.texture_of.push_back(number);
+  }
+
+  // The triangles of a polygon are a fan, as in read_mesh_ply().
+  void add_face(const FaceRow& row, std::uint64_t f) {
+    const std::string where = fmt::format("{}: face {}", file_, f);
+    const std::size_t corners = row.corners.size();
+    if (row.uv.size() != 2 * corners)
+      fail("{} has {} numbers in texcoord, expected {}", where, row.uv.size(), 2 * corners);
+    const auto at = [&](std::size_t k) {
+      return Eigen::Vector2d(row.uv[2 * k], row.uv[2 * k + 1]);
+    };
+    for (std::size_t k = 2; k < corners; ++k) add({at(0), at(k - 1), at(k)}, row.texture, where);
+  }
+
+  // The corners themselves are read by read_mesh_ply.
+  void read_faces(const std::string& bytes) {
+    PlyBody body(bytes, file_, header_);
+    for (const PlyElement& element : header_.elements) {
+      if (element.name != "face") {
+        skip_rows(body, element);
+        continue;
+      }
+      body.require_rows(element);
+      FaceRow row;
+      for (std::uint64_t i = 0; i < element.count; ++i) {
+        row.uv.clear();
+        row.texture = 0;
+        read_face_row(body, element, row);
+        add_face(row, i);
+      }
+      return;
+    }
+  }
+
+  VertexCoordinates read_vertices(const std::string& bytes) const {
+    PlyBody body(bytes, file_, header_);
+    VertexCoordinates result;
+    const PlyElement* vertices = find_element(header_, "vertex");
+    for (const PlyElement& element : header_.elements) {
+      if (&element == vertices) break;
+      skip_rows(body, element);
+    }
+    const auto uv = *vertex_coordinates(*vertices);
+    const std::size_t number = find_property(*vertices, "texnumber", false);
+    body.require_rows(*vertices);
+    result.uv.resize(vertices->count);
+    if (number != kNoProperty) result.texture.resize(vertices->count);
+    for (std::size_t i = 0; i < vertices->count; ++i)
+      for (std::size_t p = 0; p < vertices->properties.size(); ++p) {
+        const PlyProperty& property = vertices->properties[p];
+        if (property.is_list) {
+          read_list(body, property, nullptr);
+          continue;
+        }
+        const double value = body.scalar(property.type, property.name);
+        if (p == uv[0]) result.uv[i].x() = value;
+        if (p == uv[1]) result.uv[i].y() = value;
+        if (p == number) result.texture[i] = value;
+      }
+    return result;
+  }
+
+  // Corners of a face have the coordinates of their vertices, and the texture of the first vertex.
+  void use_vertices(const std::string& bytes) {
+    const VertexCoordinates at = read_vertices(bytes);
+    for (std::size_t f = 0; f < result_.mesh.faces.size(); ++f) {
+      const auto& [a, b, c] = result_.mesh.faces[f];
+      add({at.uv[a], at.uv[b], at.uv[c]}, at.texture.empty() ? 0.0 : at.texture[a],
+          fmt::format("{}: triangle {}", file_, f));
+    }
+  }
+
+  std::string file_;
+  const PlyHeader& header_;
+  TextureSet textures_;
+  TexturedMesh result_;
+};
 
 }  // namespace
 
-TexturedMesh read_textured_ply(const std::filesystem::path& path,
-                               const std::optional<LocalFrame>& frame) {
+TexturedMesh read_textured_ply(const fs::path& path, const std::optional<LocalFrame>& frame) {
   const std::string file = path.string();
-  TexturedMesh result;
-  result.mesh = frame ? read_mesh_ply(path, *frame) : read_mesh_ply(path);
+  Mesh mesh = frame ? read_mesh_ply(path, *frame) : read_mesh_ply(path);
   const std::string bytes = read_file(path);
   const PlyHeader header = parse_ply_header(bytes, file);
   if (header.texture_files.empty()) fail("{}: has no comment TextureFile", file);
-  for (const std::string& name : header.texture_files)
-    result.textures.push_back(read_color_image(path.parent_path() / name));
-  read_texture_coordinates(bytes, header, file, result);
-  return result;
+  return TexturedPlyReader(path, header).read(bytes, std::move(mesh));
 }
 
-std::vector<std::string> textures_of_ply(const std::filesystem::path& path) {
-  return parse_ply_header(read_file(path), path.string()).texture_files;
+std::vector<std::string> textures_of_ply(const fs::path& path) {
+  return PlyStream(path).header().texture_files;
 }
 
-bool is_textured_mesh(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
-  if (extension == ".obj" || extension == ".glb") return true;
-  return !textures_of_ply(path).empty();
+bool is_textured_ply(const fs::path& path) {
+  const PlyStream stream(path);
+  const PlyHeader& header = stream.header();
+  return !header.texture_files.empty() &&
+         (has_face_coordinates(header) || has_vertex_coordinates(header));
 }
 
-TextureFiles texture_files_of(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
-  if (extension == ".glb") return {};
-  if (extension == ".obj") return texture_files_of_obj(path);
+TextureFiles texture_files_of_ply(const fs::path& path) {
   TextureFiles files;
-  for (const std::string& texture : textures_of_ply(path))
-    files.textures.push_back(path.parent_path() / texture);
+  for (const std::string& name : textures_of_ply(path))
+    files.textures.push_back(path_beside(path.parent_path(), name));
   return files;
 }
 
-std::uint64_t bytes_to_read_textures(const std::filesystem::path& path) {
-  std::vector<ImageHeader> headers;
-  if (lower_extension(path) == ".glb")
-    headers = color_headers_of_glb(path);
-  else
-    for (const std::filesystem::path& texture : texture_files_of(path).textures)
-      headers.push_back(read_image_header(texture));
-  std::uint64_t bytes = 0, largest = 0;
-  for (const ImageHeader& header : headers) {
-    bytes += std::uint64_t{3} * static_cast<std::uint64_t>(header.size.width) *
-             static_cast<std::uint64_t>(header.size.height);
-    largest = std::max(largest, bytes_needed(header));
+std::uint64_t bytes_of_ply_textures(const fs::path& path) {
+  TextureSet textures(path.string(), false);
+  for (const fs::path& texture : texture_files_of_ply(path).textures)
+    textures.add(texture_from(texture));
+  return textures.bytes();
+}
+
+std::uint64_t bytes_to_read_ply(const fs::path& path) {
+  std::error_code error;
+  const std::uintmax_t file = fs::file_size(path, error);
+  if (error) return 0;
+  // A mesh is at most as large as its binary file, and at most twice as large as its text. Texture
+  // coordinates at vertices are multiplied: each of a vertex's faces has a copy in memory.
+  // An index in a strip becomes a triangle.
+  std::uint64_t factor = 3;
+  try {
+    const PlyStream stream(path);
+    const PlyHeader& header = stream.header();
+    if (!header.texture_files.empty() && !has_face_coordinates(header) &&
+        has_vertex_coordinates(header))
+      factor = 8;
+    if (find_element(header, "tristrips")) factor += 12;
+  } catch (const Error&) {  // the reader of the mesh says what is wrong
   }
-  return bytes + largest;
-}
-
-Mesh read_shape(const std::filesystem::path& path, const std::optional<LocalFrame>& frame) {
-  const std::string extension = lower_extension(path);
-  if (extension == ".obj") return read_shape_obj(path, frame);
-  if (extension == ".glb") return read_shape_glb(path, frame);
-  return frame ? read_mesh_ply(path, *frame) : read_mesh_ply(path);
-}
-
-TexturedMesh read_textured_mesh(const std::filesystem::path& path,
-                                const std::optional<LocalFrame>& frame) {
-  const std::string extension = lower_extension(path);
-  if (extension == ".obj") return read_textured_obj(path, frame);
-  if (extension == ".glb") return read_textured_glb(path, frame);
-  return read_textured_ply(path, frame);
+  return factor * file;
 }
 
 }  // namespace axial::io

@@ -34,15 +34,22 @@ std::vector<Eigen::Vector3f> placed_in(const std::optional<LocalFrame>& frame,
                                        const std::optional<Eigen::Vector3d>& offset,
                                        const std::string& file);
 
-// texture_files_of() an OBJ.
+// The functions of textured_mesh.h for each format. Errors as there.
 TextureFiles texture_files_of_obj(const std::filesystem::path& path);
-
-// The headers of the images that are the colours of a GLB's materials. Errors as for
-// read_textured_glb().
-std::vector<ImageHeader> color_headers_of_glb(const std::filesystem::path& path);
-
-// read_shape() for OBJ and GLB.
+TextureFiles texture_files_of_gltf(const std::filesystem::path& path);
+TextureFiles texture_files_of_ply(const std::filesystem::path& path);
+bool is_textured_obj(const std::filesystem::path& path);
+bool is_textured_gltf(const std::filesystem::path& path);
+bool is_textured_ply(const std::filesystem::path& path);
 Mesh read_shape_obj(const std::filesystem::path& path, const std::optional<LocalFrame>& frame);
-Mesh read_shape_glb(const std::filesystem::path& path, const std::optional<LocalFrame>& frame);
+Mesh read_shape_gltf(const std::filesystem::path& path, const std::optional<LocalFrame>& frame);
+MeshPlace place_of_obj(const std::filesystem::path& path);
+MeshPlace place_of_gltf(const std::filesystem::path& path);
+std::uint64_t bytes_of_obj_textures(const std::filesystem::path& path);
+std::uint64_t bytes_of_gltf_textures(const std::filesystem::path& path);
+std::uint64_t bytes_of_ply_textures(const std::filesystem::path& path);
+std::uint64_t bytes_to_read_obj(const std::filesystem::path& path);
+std::uint64_t bytes_to_read_gltf(const std::filesystem::path& path);
+std::uint64_t bytes_to_read_ply(const std::filesystem::path& path);
 
 }  // namespace axial::io
