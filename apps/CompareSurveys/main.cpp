@@ -7,7 +7,6 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_extension.h"
 #include "base/log.h"
 #include "base/naming.h"
 #include "base/parallel.h"
@@ -43,11 +42,6 @@ compare::ChangeFiles change_files(const Settings& settings) {
           named(".jpg")};
 }
 
-bool is_ply(const fs::path& path) {
-  const std::string extension = lower_extension(path);
-  return extension != ".obj" && extension != ".glb";
-}
-
 Mesh read_survey(const Settings& settings, const fs::path& path, const LocalFrame& frame) {
   memory_of(settings).require(io::bytes_to_read_mesh(path), "reading " + path.string());
   Mesh mesh = io::read_shape(path, frame);
@@ -81,17 +75,14 @@ std::vector<map::Photo> read_photos(const Settings& settings, const fs::path& pa
 
 // A frame near the mesh of the earlier survey.
 LocalFrame frame_of_survey(const Settings& settings, const fs::path& path) {
-  if (is_ply(path)) return frame_near(io::ply_place(path).first_vertex);
   memory_of(settings).require(io::bytes_to_read_mesh(path), "reading " + path.string());
-  // Far from the origin these positions are coarse, but exact enough to choose a frame.
-  const Mesh coarse = io::read_shape(path, LocalFrame{});
-  if (coarse.vertices.empty()) return {};
-  return frame_near(coarse.vertices.front().cast<double>());
+  return frame_near(io::mesh_place(path).first_vertex);
 }
 
 void keep_inputs(const Settings& settings) {
   const std::vector<fs::path> outputs = change_files(settings).all();
-  std::vector<fs::path> inputs{settings.before, settings.after};
+  std::vector<fs::path> inputs = io::files_of_mesh(settings.before);
+  for (const fs::path& file : io::files_of_mesh(settings.after)) inputs.push_back(file);
   for (const fs::path& scene : {settings.scene_before, settings.scene_after}) {
     if (scene.empty()) continue;
     inputs.insert(inputs.end(), {scene, io::housing_beside(scene), io::lenses_beside(scene),

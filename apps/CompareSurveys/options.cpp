@@ -22,8 +22,8 @@ constexpr SettingName kOptions[] = {{"ground_sample_distance", "--ground-sample-
                                     {"up", "--up"}};
 
 void declare_io(OptionList& list, Raw& raw, Settings& settings) {
-  list.add("input-file,i", &raw.input, "mesh of the earlier survey (PLY, OBJ or GLB)")
-      .add("other", &raw.other, "mesh of the later survey (PLY, OBJ or GLB)")
+  list.add("input-file,i", &raw.input, "mesh of the earlier survey (PLY, OBJ, GLB or glTF)")
+      .add("other", &raw.other, "mesh of the later survey (PLY, OBJ, GLB or glTF)")
       .add("scene", &raw.scene,
            "scene of the earlier survey: places that fewer than --min-views of its photographs see "
            "are not compared")

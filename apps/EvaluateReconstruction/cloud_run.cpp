@@ -19,6 +19,7 @@
 #include "inputs.h"
 #include "io/images/image.h"
 #include "io/ply/ply.h"
+#include "io/textured/textured_mesh.h"
 #include "rendered_views.h"
 #include "runs.h"
 
@@ -232,7 +233,7 @@ void require_kind(const Options& options, const Input& input) {
 nlohmann::ordered_json run_cloud(const Options& options) {
   const Models models = read_models(options);
   Input input = read_input(options, models.frames.input);
-  const Mesh truth = io::read_mesh_ply(options.truth, models.frames.truth);
+  const Mesh truth = io::read_shape(options.truth, models.frames.truth);
   const geometry::Surface surface = naming(options.truth, [&] { return geometry::Surface(truth); });
   naming(options.truth,
          [&] { evaluate::sample_surface(truth, 1, options.seed); });  // needs an area

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 // digits when the file was written.
 LocalFrame checked_frame(const fs::path& path) {
   constexpr double kFar = 1e4;  // [m]: here, float has a resolution of 1 mm
-  const io::PlyPlace place = io::ply_place(path);
+  const io::MeshPlace place = io::mesh_place(path);
   const double far = place.frame.to_local(place.first_vertex).cwiseAbs().maxCoeff();
   if (place.is_float && far > kFar)
     log_warning(
@@ -32,16 +32,18 @@ LocalFrame checked_frame(const fs::path& path) {
   return frame_near(place.first_vertex);
 }
 
-bool is_ply(const fs::path& path) {
+// OBJ and glTF files hold no clouds.
+bool is_mesh(const fs::path& path) {
   const std::string extension = lower_extension(path);
-  return extension != ".obj" && extension != ".glb";
+  return extension == ".obj" || extension == ".glb" || extension == ".gltf" ||
+         io::ply_has_faces(path);
 }
 
 }  // namespace
 
 Models read_models(const Options& options) {
   Models models;
-  if (is_ply(options.input)) checked_frame(options.input);
+  checked_frame(options.input);
   if (!options.truth.empty()) models.frames.truth = checked_frame(options.truth);
   if (!options.cameras.empty()) {
     models.reference = io::read_colmap_model(options.cameras_model);
@@ -58,13 +60,11 @@ Models read_models(const Options& options) {
 Input read_input(const Options& options, const LocalFrame& frame) {
   const fs::path& path = options.input;
   Input input;
-  const bool has_textures =
-      !is_ply(path) || (!options.rendered_views.empty() && io::is_textured_mesh(path));
-  if (has_textures) {
+  if (!options.rendered_views.empty() && io::is_textured_mesh(path)) {
     input.texture = io::read_textured_mesh(path, frame);
     input.mesh = std::exchange(input.texture->mesh, {});
-  } else if (io::ply_has_faces(path)) {
-    input.mesh = io::read_mesh_ply(path, frame);
+  } else if (is_mesh(path)) {
+    input.mesh = io::read_shape(path, frame);
   } else {
     input.cloud = io::read_cloud_ply(path, frame);
     input.uncertainty = read_uncertainty(path, input.cloud);

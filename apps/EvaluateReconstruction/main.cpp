@@ -7,6 +7,7 @@
 #include "base/same_file.h"
 #include "io/bytes/json.h"
 #include "io/colmap/colmap.h"
+#include "io/textured/textured_mesh.h"
 #include "options.h"
 #include "runs.h"
 
@@ -16,7 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> inputs_of(const Options& options) {
-  std::vector<fs::path> inputs{options.input, options.truth, options.housing};
+  std::vector<fs::path> inputs{options.housing};
+  for (const fs::path& model : {options.input, options.truth})
+    for (const fs::path& file : io::files_of_mesh(model)) inputs.push_back(file);
   for (const fs::path& model : {options.cameras_model, options.estimated_model})
     if (!model.empty())
       for (const fs::path& file : files_in(model)) inputs.push_back(file);

@@ -36,10 +36,11 @@ std::vector<double> parse_tolerances(const std::string& text) {
 void declare_inputs(OptionList& visible, Options& options, Texts& texts) {
   visible
       .add("input-file,i", &texts.input,
-           "file to evaluate: a cloud or a mesh (.ply), a textured mesh (.ply, .obj, .glb), or a "
-           "depth map (.dmap)")
+           "file to evaluate: a cloud (.ply), a mesh, with or without textures (.ply, .obj, .glb, "
+           ".gltf), or a depth map (.dmap)")
       .add("truth-file,m", &texts.truth,
-           "ground truth: a mesh (.ply), or for a depth map the distances along its rays (.tiff); "
+           "ground truth: a mesh (.ply, .obj, .glb, .gltf), or for a depth map the distances along "
+           "its rays (.tiff); "
            "not needed for --render")
       .add_with_default("tolerance", &texts.tolerance,
                         "tolerances: largest distances that count as correct [m], separated by "

@@ -13,6 +13,7 @@
 #include "evaluate/render_mesh.h"
 #include "evaluate/render_report.h"
 #include "io/images/image.h"
+#include "io/textured/textured_mesh.h"
 
 namespace axial::apps {
 namespace {
@@ -62,7 +63,8 @@ void check_photograph(const fs::path& photograph, const View& view) {
 
 void check_pictures(const Options& options, std::span<const RenderTask> tasks) {
   if (options.render_folder.empty()) return;
-  std::vector<fs::path> inputs{options.input, options.truth};
+  std::vector<fs::path> inputs = io::files_of_mesh(options.input);
+  inputs.push_back(options.truth);
   for (const RenderTask& task : tasks) inputs.push_back(task.photograph);
   std::set<fs::path> pictures;
   for (const RenderTask& task : tasks)

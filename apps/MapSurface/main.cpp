@@ -83,14 +83,9 @@ TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame) {
 void keep_inputs(const Settings& settings, const texture::Photographs& photographs) {
   const fs::path& scene = settings.scene.scene;
   std::vector<fs::path> inputs = photographs.files();
-  inputs.insert(inputs.end(),
-                {scene, settings.mesh, io::housing_file(settings.scene), io::lenses_beside(scene),
-                 io::geo_offset_beside(scene), settings.photographs.views_file});
-  if (io::is_textured_mesh(settings.mesh)) {
-    const io::TextureFiles files = io::texture_files_of(settings.mesh);
-    inputs.insert(inputs.end(), files.textures.begin(), files.textures.end());
-    inputs.insert(inputs.end(), files.materials.begin(), files.materials.end());
-  }
+  inputs.insert(inputs.end(), {scene, io::housing_file(settings.scene), io::lenses_beside(scene),
+                               io::geo_offset_beside(scene), settings.photographs.views_file});
+  for (const fs::path& file : io::files_of_mesh(settings.mesh)) inputs.push_back(file);
   const std::vector<fs::path> outputs = map_files(settings).all();
   require_no_inputs(outputs, inputs, "--output-file");
   std::error_code ignored;

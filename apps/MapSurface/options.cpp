@@ -33,8 +33,8 @@ constexpr SettingName kOptions[] = {{"max_memory", "--max-memory"},
 void declare_io(OptionList& list, Raw& raw, Settings& settings) {
   list.add("input-file,i", &raw.input, "scene with cameras and images")
       .add("mesh-file,m", &raw.mesh,
-           "mesh to map: PLY, textured PLY, OBJ or GLB (<input>.ply); a mesh without textures is "
-           "textured first, as by TextureMesh")
+           "mesh to map: PLY, OBJ, GLB or glTF (<input>.ply); a mesh without textures is textured "
+           "first, as by TextureMesh")
       .add("output-file,o", &raw.output, "begin of the names of the maps (<input>_map)")
       .add_with_default("max-memory", &settings.max_memory,
                         "largest memory to use [MB] (0: 70 % of the free memory)");

@@ -11,6 +11,7 @@
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
+#include "io/textured/textured_mesh.h"
 #include "options.h"
 #include "scene/region.h"
 #include "tiled.h"
@@ -24,12 +25,10 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kProgramBytes = 60 * kMegabyte;
 
 void check_outputs(const Options& options) {
-  const std::vector<fs::path> inputs{options.scene.scene,
-                                     io::housing_file(options.scene),
-                                     io::lenses_beside(options.scene.scene),
-                                     io::geo_offset_beside(options.scene.scene),
-                                     cloud_file(options),
-                                     options.mesh};
+  std::vector<fs::path> inputs{options.scene.scene, io::housing_file(options.scene),
+                               io::lenses_beside(options.scene.scene),
+                               io::geo_offset_beside(options.scene.scene), cloud_file(options)};
+  for (const fs::path& file : io::files_of_mesh(options.mesh)) inputs.push_back(file);
   std::error_code ignored;
   fs::create_directories(options.output.parent_path(), ignored);
   require_not_an_input(options.output, inputs, "--output-file");

@@ -16,6 +16,7 @@
 #include "io/cameras/geo_offset.h"
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/point_source.h"
+#include "io/textured/textured_mesh.h"
 #include "options.h"
 #include "refine/state_file.h"
 
@@ -32,7 +33,8 @@ fs::path state_file(const Options& options) {
 void check_outputs(const Options& options, const densify::Project& project) {
   std::vector<fs::path> inputs{options.scene.input, densify::housing_file(options.scene),
                                io::lenses_beside(options.scene.input),
-                               io::geo_offset_beside(options.scene.input), options.mesh};
+                               io::geo_offset_beside(options.scene.input)};
+  for (const fs::path& file : io::files_of_mesh(options.mesh)) inputs.push_back(file);
   for (const SceneImage& image : project.scene.images) inputs.emplace_back(image.path);
   for (const densify::View& view : project.views) inputs.push_back(view.mask);
   for (const fs::path& output : {options.output, state_file(options)}) {

@@ -48,7 +48,7 @@ std::string option_of(std::string_view setting) {
 void declare_io(OptionList& list, Raw& raw, Options& options) {
   densify::Settings& scene = options.scene;
   list.add("input-file,i", &raw.input, "scene with cameras (.mvs)")
-      .add("mesh-file,m", &raw.mesh, "mesh to refine (<input>.ply)")
+      .add("mesh-file,m", &raw.mesh, "mesh to refine: PLY, OBJ, GLB or glTF (<input>.ply)")
       .add("output-file,o", &raw.output, "mesh to write (<input>_refine.ply)")
       .add_with_default("export-type", &raw.export_type, "format of the mesh: ply or obj")
       .add_with_default("max-memory", &scene.max_memory,

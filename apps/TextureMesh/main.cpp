@@ -52,9 +52,9 @@ void keep_inputs(const Settings& settings, const texture::Photographs& photograp
                  std::size_t tile, std::size_t textures) {
   const fs::path& scene = settings.scene.scene;
   std::vector<fs::path> inputs = photographs.files();
-  inputs.insert(inputs.end(),
-                {scene, settings.mesh, io::housing_file(settings.scene), io::lenses_beside(scene),
-                 io::geo_offset_beside(scene), settings.photographs.views_file});
+  inputs.insert(inputs.end(), {scene, io::housing_file(settings.scene), io::lenses_beside(scene),
+                               io::geo_offset_beside(scene), settings.photographs.views_file});
+  for (const fs::path& file : io::files_of_mesh(settings.mesh)) inputs.push_back(file);
   for (const io::TexturedFormat format : settings.formats)
     require_no_inputs(io::textured_files(output_of(settings, tile), format, textures), inputs,
                       "--output-file");

@@ -48,7 +48,7 @@ std::vector<NotBuilt> not_built_hidden() {
 
 void declare_io(OptionList& list, Raw& raw, Settings& settings) {
   list.add("input-file,i", &raw.input, "scene with cameras and images")
-      .add("mesh-file,m", &raw.mesh, "mesh to texture, PLY (<input>.ply)")
+      .add("mesh-file,m", &raw.mesh, "mesh to texture: PLY, OBJ, GLB or glTF (<input>.ply)")
       .add("output-file,o", &raw.output, "textured mesh to write (<input>_texture)")
       .add_with_default("export-type", &raw.export_type,
                         "formats to write, separated by commas: ply, obj, glb, gltf")

@@ -6,14 +6,17 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
+#include "converted_mesh.h"
 #include "evaluate/alignment.h"
 #include "find_move.h"
 #include "image_scaling.h"
@@ -21,6 +24,7 @@
 #include "io/cameras/moved_housing.h"
 #include "io/openmvs/mvs.h"
 #include "io/ply/ply_transform.h"
+#include "io/textured/textured_mesh.h"
 #include "measure_volume.h"
 #include "options.h"
 #include "texture_copies.h"
@@ -50,11 +54,15 @@ struct MovedPly {
   fs::path input, output;
 };
 
+bool is_ply(const fs::path& path) {
+  return lower_extension(path) == ".ply";
+}
+
 std::vector<MovedPly> moved_plys(const Options& options) {
   std::vector<MovedPly> plys;
   if (!options.moves()) return plys;
   if (!options.cloud.empty()) plys.push_back({"cloud", options.cloud, cloud_output(options)});
-  if (!options.mesh.empty()) plys.push_back({"mesh", options.mesh, mesh_output(options)});
+  if (is_ply(options.mesh)) plys.push_back({"mesh", options.mesh, mesh_output(options)});
   return plys;
 }
 
@@ -62,18 +70,24 @@ std::vector<MovedPly> moved_plys(const Options& options) {
 struct Files {
   std::vector<MovedPly> plys;
   std::vector<TextureCopy> textures;  // of the mesh
+  std::optional<ConvertedMesh> mesh;  // if it is not a PLY
 };
 
 Files files_of(const Options& options) {
-  Files files{moved_plys(options), {}};
-  if (options.moves() && !options.mesh.empty())
+  Files files{moved_plys(options), {}, {}};
+  if (!options.moves() || options.mesh.empty()) return files;
+  if (is_ply(options.mesh))
     files.textures = texture_copies(options.mesh, mesh_output(options));
+  else
+    files.mesh = converted_mesh(options.mesh, mesh_output(options));
   return files;
 }
 
 std::vector<NamedOutput> outputs_of(const Options& options, const Files& files) {
   std::vector<NamedOutput> outputs;
   for (const MovedPly& ply : files.plys) outputs.push_back({"--output-file", ply.output});
+  if (files.mesh)
+    for (const fs::path& file : files.mesh->outputs) outputs.push_back({"--output-file", file});
   if (options.writes_scene())
     for (const fs::path& file :
          {options.output, io::housing_beside(options.output), io::lenses_beside(options.output),
@@ -98,6 +112,7 @@ void check_outputs(const Options& options, const Files& files) {
                                options.align,
                                options.transform,
                                options.positions};
+  for (const fs::path& file : io::files_of_mesh(options.mesh)) inputs.push_back(file);
   for (const TextureCopy& texture : files.textures) {
     inputs.push_back(texture.from);
     if (!texture.needed) inputs.push_back(texture.to);
@@ -139,7 +154,8 @@ void copy_texture(const TextureCopy& texture, const fs::path& temporary) {
          error.message());
 }
 
-// A file to write, and how to write it under a temporary name.
+// A file to write, and how to write it under a temporary name. Without a function, the file is
+// written together with others.
 struct Output {
   fs::path path;
   std::function<void(const fs::path& temporary)> write;
@@ -149,6 +165,8 @@ struct Output {
 std::vector<Output> all_outputs(const Options& options, const Files& files, const FrameMove& move,
                                 const Scene& scene) {
   std::vector<Output> outputs;
+  if (files.mesh)  // these files come first
+    for (const fs::path& file : files.mesh->outputs) outputs.push_back({file, {}});
   for (const TextureCopy& texture : files.textures)
     if (texture.needed)
       outputs.push_back({texture.to, [&](const fs::path& file) { copy_texture(texture, file); }});
@@ -174,12 +192,15 @@ void write_all(const Options& options, const Files& files, const FrameMove& move
   std::vector<fs::path> paths;
   for (const Output& output : outputs) paths.push_back(output.path);
   write_together(paths, [&](const std::vector<fs::path>& temporaries) {
-    for (std::size_t k = 0; k < outputs.size(); ++k) outputs[k].write(temporaries[k]);
+    if (files.mesh) write_moved(*files.mesh, move, temporaries);
+    for (std::size_t k = 0; k < outputs.size(); ++k)
+      if (outputs[k].write) outputs[k].write(temporaries[k]);
     write_small_images(images, folder_of_small_images(options));
     io::write_cameras_beside(options.output, scene, lenses, options.files);
   });
   for (const MovedPly& ply : files.plys)
     log_info("{}: transformed {}", ply.output.string(), ply.what);
+  if (files.mesh) log_info("{}: transformed mesh", files.mesh->outputs[0].string());
   if (options.max_resolution > 0)
     log_info("{} of {} images were shrunk to at most {} pixels, in {}", images.size(),
              scene.scene.images.size(), options.max_resolution,

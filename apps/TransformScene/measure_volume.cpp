@@ -8,18 +8,14 @@
 #include "evaluate/alignment.h"
 #include "evaluate/topology.h"
 #include "evaluate/volume.h"
-#include "io/ply/ply.h"
-#include "io/ply/ply_transform.h"
+#include "io/openmvs/point_source.h"
 
 namespace axial::apps {
 namespace {
 
 // The mesh in move.to.
 Mesh moved_mesh(const Options& options, const FrameMove& move) {
-  const LocalFrame stored = io::frame_of_positions(options.mesh, move.from);
-  const bool is_local = (stored.origin - move.from.origin).isZero(0);
-  Mesh mesh =
-      is_local ? io::read_mesh_ply(options.mesh) : io::read_mesh_ply(options.mesh, move.from);
+  Mesh mesh = io::read_mesh_of_scene(move.from, options.mesh);
   if (mesh.faces.empty()) fail("the mesh has no faces");
   evaluate::apply(move.similarity, mesh);
   return mesh;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "base/log.h"
 #include "base/not_built.h"
 #include "base/version.h"
@@ -31,7 +32,8 @@ void declare_files(OptionList& list, Texts& texts) {
   list.add("input-file,i", &texts.input, "scene to transform (.mvs)")
       .add("pointcloud-file,p", &texts.cloud,
            "PLY cloud in the scene's coordinates, transformed with it")
-      .add("mesh-file,m", &texts.mesh, "PLY mesh in the scene's coordinates, transformed with it")
+      .add("mesh-file,m", &texts.mesh,
+           "mesh in the scene's coordinates, transformed with it: PLY, OBJ, GLB or glTF")
       .add("output-file,o", &texts.output,
            "scene to write (<input>_transform.mvs); the cloud and the mesh are written beside it, "
            "as .ply and _mesh.ply");
@@ -97,9 +99,13 @@ void check(const Options& options) {
         "--compute-volume 1");
   if (options.compute_volume && options.mesh.empty())
     fail("--compute-volume needs --mesh-file: the mesh whose volume is measured");
-  for (const fs::path& ply : {options.cloud, options.mesh})
-    if (!ply.empty() && ply.extension() != ".ply")
-      fail("{}: not built yet: only PLY files are read", ply.string());
+  if (!options.cloud.empty() && options.cloud.extension() != ".ply")
+    fail("{}: not built yet: clouds are read from PLY files alone", options.cloud.string());
+  const std::string kind = lower_extension(options.mesh);
+  if (!options.mesh.empty() && kind != ".ply" && kind != ".obj" && kind != ".glb" &&
+      kind != ".gltf")
+    fail("{}: not built yet: meshes are read from PLY, OBJ, GLB and glTF files",
+         options.mesh.string());
   if (options.output.extension() != ".mvs")
     fail("--output-file {}: must end in .mvs", options.output.string());
   if (options.up_axis < 0 || options.up_axis > 2)

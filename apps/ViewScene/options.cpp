@@ -46,12 +46,12 @@ void take_survey(const Raw& raw, const CommonOptions& common, Options& options) 
 void declare(OptionList& list, Raw& raw, Options& options) {
   list.add("input-file,i", &raw.input, "scene with cameras and images (.mvs)")
       .add("pointcloud-file,p", &raw.cloud, "cloud to show, PLY (<input>.ply)")
-      .add("mesh-file,m", &raw.mesh, "mesh to show, with or without textures: PLY, OBJ, GLB")
+      .add("mesh-file,m", &raw.mesh, "mesh to show, with or without textures: PLY, OBJ, GLB, glTF")
       .add("report", &raw.report, "folder to write; a browser shows its index.html")
       .add("sfm-model", &raw.sfm_model,
            "COLMAP model from which the scene was made: the page shows its reprojection errors")
       .add("truth", &raw.truth,
-           "true mesh, PLY, in the scene's coordinates: the page shows the cloud's distances to it")
+           "true mesh in the scene's coordinates: the page shows the cloud's distances to it")
       .add_with_default("max-points", &options.max_points,
                         "largest number of points; a larger cloud is thinned out randomly")
       .add_with_default("photograph-size", &options.photograph_size,

@@ -128,7 +128,9 @@ class WrongInput(Transform):
         self.refused("--transfer-texture-file x.ply: not built yet", *t, "--transfer-texture-file",
                      "x.ply")
         self.refused("--sample-mesh 5: not built yet", *t, "--sample-mesh", 5)
-        self.refused("x.glb: not built yet", *t, "-m", "x.glb")
+        self.refused("x.stl: not built yet", *t, "-m", "x.stl")
+        self.refused("x.obj: not built yet", *t, "-p", "x.obj")
+        self.refused("x.glb", *t, "-m", "x.glb")
         self.refused("missing.ply", *t, "-p", "missing.ply")
         write(self.path("work", "bad.mvs"), tiny_scene.mvs(self.images, pose=0xFFFFFFFF))
         self.refuses("bad.mvs: no image is calibrated", "TransformScene", "-i", "bad.mvs", "-w",

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "converted_mesh.h"
+
+#include "base/error.h"
+#include "evaluate/alignment.h"
+#include "io/openmvs/point_source.h"
+#include "io/textured/textured_mesh.h"
+
+namespace axial::apps {
+
+namespace fs = std::filesystem;
+
+ConvertedMesh converted_mesh(const fs::path& input, const fs::path& output) {
+  ConvertedMesh mesh{input, {output}, {}};
+  if (!io::is_textured_mesh(input)) return mesh;
+  mesh.look = io::read_textured_mesh(input);
+  mesh.look.mesh = {};  // its positions are read again in the frame of the scene
+  mesh.outputs = io::textured_files(output, io::TexturedFormat::ply, mesh.look.textures.size());
+  return mesh;
+}
+
+void write_moved(const ConvertedMesh& mesh, const FrameMove& move,
+                 std::span<const fs::path> temporaries) {
+  Mesh moved = io::read_mesh_of_scene(move.from, mesh.input);
+  evaluate::apply(move.similarity, moved);
+  for (std::size_t i = 0; i < moved.vertices.size(); ++i)
+    if (!moved.vertices[i].allFinite())
+      fail("{}: vertex {} has no finite position after the transformation", mesh.input.string(), i);
+  if (mesh.look.textures.empty()) return io::write_mesh_ply(temporaries[0], moved, {move.to});
+  TexturedMesh textured = mesh.look;
+  textured.mesh = std::move(moved);
+  io::write_textured_as(temporaries, mesh.outputs[0], textured, io::TexturedFormat::ply, move.to);
+}
+
+}  // namespace axial::apps

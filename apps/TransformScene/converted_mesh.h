@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A mesh that is not a PLY file, and becomes one when it is moved.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "scene/moved_scene.h"
+#include "scene/textured_mesh.h"
+
+namespace axial::apps {
+
+struct ConvertedMesh {
+  std::filesystem::path input;
+  std::vector<std::filesystem::path> outputs;  // the PLY file and its textures
+  TexturedMesh look;                           // textures and coordinates; `mesh` is empty
+};
+
+// Reads the textures of `input` (OBJ, GLB or glTF), if it has any, and names the files of the moved
+// mesh: the PLY file `output`, and pictures beside it. Writes nothing. Errors as for
+// io::read_textured_mesh().
+ConvertedMesh converted_mesh(const std::filesystem::path& input,
+                             const std::filesystem::path& output);
+
+// Moves the mesh and writes it under the names `temporaries`, one for each of `outputs`. Positions
+// are written in `move.to`. Normals are left out. Errors as for io::read_mesh_of_scene().
+void write_moved(const ConvertedMesh& mesh, const FrameMove& move,
+                 std::span<const std::filesystem::path> temporaries);
+
+}  // namespace axial::apps

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every program that takes a mesh reads every format: a mesh gives the same result as the PLY file
+with the same vertices and faces."""
+
+import json
+import os
+import shutil
+import struct
+
+from programs import contents, files_below, main, read, write
+from texture_mesh_test import mesh_ply, wall
+from tiny_scene import TinyScene
+from transform_case import matrix_text, ply_points
+
+
+def obj_text(vertices, faces):
+    return ("".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in vertices)
+            + "".join("f " + " ".join(str(i + 1) for i in face) + "\n" for face in faces))
+
+
+def glb_bytes(gltf, binary):
+    text = json.dumps(gltf).encode()
+    text += b" " * (-len(text) % 4)
+    binary += b"\0" * (-len(binary) % 4)
+    return (struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(binary))
+            + struct.pack("<I4s", len(text), b"JSON") + text
+            + struct.pack("<I4s", len(binary), b"BIN\0") + binary)
+
+
+def gltf_parts(vertices, faces):
+    """A glTF without textures, whose node moves the mesh back by what its vertices are shifted."""
+    positions = b"".join(struct.pack("<3f", x, y, z + 2.0) for x, y, z in vertices)
+    indices = b"".join(struct.pack("<3H", *face) for face in faces)
+    view = lambda at, data: {"buffer": 0, "byteOffset": at, "byteLength": len(data)}
+    return {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0, "translation": [0, 0, -2]}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+            "accessors": [
+                {"bufferView": 0, "componentType": 5126, "count": len(vertices), "type": "VEC3"},
+                {"bufferView": 1, "componentType": 5123, "count": 3 * len(faces), "type": "SCALAR"}],
+            "bufferViews": [view(0, positions), view(len(positions), indices)],
+            "buffers": [{"byteLength": len(positions + indices)}]}, positions + indices
+
+
+class Formats(TinyScene):
+    """The wall as m.ply, without textures as m.obj, m.gltf with "the mesh.bin", and n.glb."""
+
+    def setUp(self):
+        super().setUp()
+        vertices, faces = wall(cells=8, half=0.25)  # exact in float
+        self.put("m.ply", mesh_ply(vertices, faces))
+        self.put("m.obj", obj_text(vertices, faces))
+        gltf, binary = gltf_parts(vertices, faces)
+        self.put("n.glb", glb_bytes(gltf, binary))
+        gltf["buffers"][0]["uri"] = "the%20mesh.bin"
+        self.put("the mesh.bin", binary)
+        self.put("m.gltf", json.dumps(gltf))
+
+    def put(self, name, data):
+        write(self.path("work", name), data)
+
+    def outputs(self, program, mesh, option="-m", *arguments):
+        """The files that the program makes from the mesh, and removes them."""
+        before = files_below(self.work)
+        self.succeeds(program, "-i", self.scene, "-w", self.work, option, mesh, "-o", "out.mvs"
+                      if program == "TransformScene" else "out", *arguments)
+        new = files_below(self.work) - before
+        self.assertTrue(new)
+        found = {name: read(self.path("work", name)) for name in new}
+        for name in new:
+            os.remove(self.path("work", name))
+        return found
+
+    def same_for_all(self, program, option="-m", *arguments):
+        expected = self.outputs(program, "m.ply", option, *arguments)
+        for mesh in ("m.obj", "m.gltf", "n.glb"):
+            with self.subTest(program=program, mesh=mesh):
+                self.assertEqual(self.outputs(program, mesh, option, *arguments), expected)
+
+
+class Untextured(Formats):
+    def test_texture_mesh(self):
+        self.same_for_all("TextureMesh")
+
+    def test_refine_mesh(self):
+        self.same_for_all("RefineMesh", "-m", "--max-views", 2, "--scales", 1)
+
+    def test_reconstruct_mesh(self):
+        self.same_for_all("ReconstructMesh", "--mesh-file")
+
+    def test_map_surface(self):
+        self.same_for_all("MapSurface")
+
+    def test_transform_scene(self):
+        write(self.path("t.txt"), matrix_text(2.5))
+        move = ("-t", self.path("t.txt"))
+        expected, _ = ply_points(self.outputs("TransformScene", "m.ply", "-m", *move)["out_mesh.ply"])
+        for mesh in ("m.obj", "m.gltf", "n.glb"):
+            found, _ = ply_points(self.outputs("TransformScene", mesh, "-m", *move)["out_mesh.ply"])
+            for a, b in zip(found, expected, strict=True):
+                self.assertLess(max(abs(p - q) for p, q in zip(a, b)), 1e-6)
+
+    def test_evaluate_reconstruction(self):
+        reports = []
+        for mesh, truth in (("m.ply", "m.ply"), ("m.obj", "m.gltf"), ("n.glb", "m.obj"),
+                            ("m.gltf", "n.glb")):
+            report = self.path("report.json")
+            self.succeeds("EvaluateReconstruction", "-i", self.path("work", mesh), "-m",
+                          self.path("work", truth), "--samples", 2000, "--json", report)
+            reports.append(json.loads(read(report)))
+            os.remove(report)
+        self.assertEqual([report["accuracy"] for report in reports[1:]], 3 * [reports[0]["accuracy"]])
+
+    def test_view_scene(self):
+        pages = []
+        self.put("cloud.ply", mesh_ply(wall(cells=8, half=0.25)[0], []))
+        for mesh in ("m.ply", "m.obj", "m.gltf", "n.glb"):
+            page = self.path("page")
+            self.succeeds("ViewScene", "-i", self.scene, "-w", self.work, "-p", "cloud.ply", "-m", mesh,
+                          "--report", page)
+            pages.append({name: data for name, data in contents(page).items() if "mesh" in name})
+            self.assertTrue(pages[-1])
+            shutil.rmtree(page)
+        self.assertEqual(pages[1:], 3 * [pages[0]])
+
+    def test_files_of_the_mesh_are_not_replaced(self):
+        before = contents(self.work)
+        self.put("x.gltf", read(self.path("work", "m.gltf")).replace(b"the%20mesh", b"x"))
+        self.put("x.bin", read(self.path("work", "the mesh.bin")))
+        self.refuses("x.bin", "TextureMesh", "-i", self.scene, "-w", self.work, "-m", "x.gltf", "-o",
+                     "x", "--export-type", "gltf")
+        self.assertEqual({name: data for name, data in contents(self.work).items()
+                          if not name.startswith("x.")}, before)
+
+
+class Textured(Formats):
+    """The textured wall as TextureMesh writes it, and as a GLB with its picture beside it."""
+
+    def setUp(self):
+        super().setUp()
+        self.succeeds("TextureMesh", "-i", self.scene, "-w", self.work, "-m", "m.ply", "-o", "t",
+                      "--export-type", "ply,obj,glb,gltf")
+        gltf = json.loads(read(self.path("work", "t.gltf")))
+        del gltf["buffers"][0]["uri"]
+        self.put("e.glb", glb_bytes(gltf, read(self.path("work", "t.bin"))))
+
+    def test_maps(self):
+        maps = [self.outputs("MapSurface", mesh) for mesh in ("t.glb", "t.gltf", "e.glb")]
+        self.assertEqual(maps[1:], 2 * [maps[0]])
+        for mesh in ("t.ply", "t.obj"):  # texture coordinates differ by their rounding
+            self.assertEqual(self.outputs("MapSurface", mesh)["out.dem.tif"], maps[0]["out.dem.tif"])
+
+    def test_transform_scene_writes_a_textured_ply(self):
+        write(self.path("t.txt"), matrix_text(2.5))
+        for mesh in ("t.obj", "t.gltf", "e.glb"):
+            found = self.outputs("TransformScene", mesh, "-m", "-t", self.path("t.txt"))
+            self.assertLess({"out.mvs", "out_mesh.ply", "out_mesh0.png"}, set(found) | {""})
+            self.assertIn(b"comment TextureFile out_mesh0.png\n", found["out_mesh.ply"])
+        self.refuses("t0.png", "TransformScene", "-i", self.scene, "-w", self.work, "-m", "e.glb", "-t",
+                     self.path("t.txt"), "-o", "t.mvs", "--transform-out", self.path("work", "t0.png"))
+
+    def test_pages_and_rendered_pictures(self):
+        pages = []
+        for mesh in ("t.gltf", "e.glb"):
+            page = self.path("page" + mesh)
+            self.put("cloud.ply", mesh_ply(wall(cells=8, half=0.25)[0], []))
+            self.succeeds("ViewScene", "-i", self.scene, "-w", self.work, "-p", "cloud.ply", "-m", mesh,
+                          "--report", page)
+            pages.append({name: data for name, data in contents(page).items()
+                          if "mesh" in name or "texture" in name})
+        self.assertEqual(pages[0], pages[1])
+
+    def test_their_pictures_are_not_replaced(self):
+        before = contents(self.work)
+        self.put("u.gltf", read(self.path("work", "t.gltf")))
+        self.refuses("t0.png", "TextureMesh", "-i", self.scene, "-w", self.work, "-m", "u.gltf", "-o",
+                     "t", "--export-type", "ply")
+        os.remove(self.path("work", "u.gltf"))
+        self.assertEqual(contents(self.work), before)
+
+
+if __name__ == "__main__":
+    main()
