@@ -51,7 +51,7 @@ class ReadObjTest : public testing::Test {
 };
 
 // (u, v) with v from the lower edge.
-Eigen::Vector2f uv_of(const TexturedMesh& mesh, std::size_t corner) {
+Eigen::Vector2f obj_uv(const TexturedMesh& mesh, std::size_t corner) {
   const cv::Size size = mesh.textures[mesh.texture_of[0]].size();
   const Eigen::Vector2f pixel = mesh.uv[0][corner];
   return {(pixel.x() + 0.5f) / static_cast<float>(size.width),
@@ -93,8 +93,8 @@ TEST_F(ReadObjTest, EveryFormOfLines) {
   const TexturedMesh early = read(
       "usemtl wall\nf 1/1/1 2/2/1 3/1/1\nmtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.25\n"
       "vt 1 0.5 0\nvn 0 0 1\n");
-  EXPECT_LT((uv_of(early, 0) - Eigen::Vector2f(0.25f, 0)).norm(), 1e-6);
-  EXPECT_LT((uv_of(early, 1) - Eigen::Vector2f(1, 0.5f)).norm(), 1e-6);
+  EXPECT_LT((obj_uv(early, 0) - Eigen::Vector2f(0.25f, 0)).norm(), 1e-6);
+  EXPECT_LT((obj_uv(early, 1) - Eigen::Vector2f(1, 0.5f)).norm(), 1e-6);
   EXPECT_THAT(error(kStart + "surf 0 1 0 1 1 2\n"), HasSubstr("'surf' is not supported"));
   EXPECT_THAT(error(kStart + "f 1/1 2/2 \\\n"), HasSubstr("corner is missing"));
 }
@@ -105,9 +105,9 @@ TEST_F(ReadObjTest, OptionsOfMapsMoveCoordinates) {
         "map_kd -blendu on -bm 0.5 -mm 0 1 -boost 2 -s 0.5 0.5 -texres 512 "
         "-cc off -o 0.25 t.png"}) {
     const TexturedMesh mesh = with_map(map);
-    EXPECT_LT((uv_of(mesh, 0) - Eigen::Vector2f(0.25f, 0)).norm(), 1e-6) << map;
-    EXPECT_LT((uv_of(mesh, 1) - Eigen::Vector2f(0.75f, 0)).norm(), 1e-6) << map;
-    EXPECT_LT((uv_of(mesh, 2) - Eigen::Vector2f(0.25f, 0.5f)).norm(), 1e-6) << map;
+    EXPECT_LT((obj_uv(mesh, 0) - Eigen::Vector2f(0.25f, 0)).norm(), 1e-6) << map;
+    EXPECT_LT((obj_uv(mesh, 1) - Eigen::Vector2f(0.75f, 0)).norm(), 1e-6) << map;
+    EXPECT_LT((obj_uv(mesh, 2) - Eigen::Vector2f(0.25f, 0.5f)).norm(), 1e-6) << map;
   }
   // A scale of 2 shows the picture twice along each axis, or its edge.
   EXPECT_EQ(with_map("map_Kd -s 2 2 t.png").textures[0].size(), cv::Size(64, 32));

@@ -115,13 +115,15 @@ class GltfReader {
     }
     std::vector<Eigen::Vector2d> uv;  // from the upper edge
     if (material.image) uv = coordinates_of(file_, primitive, material, vertices);
+    std::string problem;
     for (const std::array<std::uint32_t, 3>& face : faces) {
       std::array<Eigen::Vector2d, 3> corners{{{0, 0}, {1, 0}, {0, 1}}};
       for (std::size_t k = 0; k < 3 && material.image; ++k) {
         const Eigen::Vector2d& at = uv[face[mirrored ? (3 - k) % 3 : k]];
         corners[k] = {at.x(), 1 - at.y()};
       }
-      result_.uv.push_back(textures_.place(texture, corners, file_.name() + ": " + primitive.name));
+      result_.uv.push_back(textures_.place(texture, corners, problem));
+      if (!problem.empty()) fail("{}: a face of {} {}", file_.name(), primitive.name, problem);
       result_.texture_of.push_back(texture);
     }
   }

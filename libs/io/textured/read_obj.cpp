@@ -222,7 +222,9 @@ class ObjReader {
     } else if (!used.texture) {
       used.texture = textures_.add(texture_of_color(used.material.color));
     }
-    result_.uv.push_back(textures_.place(*used.texture, uv, line.where() + ": the face"));
+    std::string problem;
+    result_.uv.push_back(textures_.place(*used.texture, uv, problem));
+    if (!problem.empty()) fail("{}: the face {}", line.where(), problem);
     result_.texture_of.push_back(*used.texture);
   }
 

@@ -110,7 +110,7 @@ std::uint32_t TextureSet::add(const TextureSource& source) {
 
 TexturedMesh::Corners TextureSet::place(std::uint32_t index,
                                         const std::array<Eigen::Vector2d, 3>& uv,
-                                        const std::string& where) {
+                                        std::string& problem) {
   Texture& texture = textures_[index];
   std::array<Eigen::Vector2d, 3> at = uv;
   const auto copies = [&](int axis, int pixels) {
@@ -119,13 +119,16 @@ TexturedMesh::Corners TextureSet::place(std::uint32_t index,
   };
   const double wide = std::max<double>(texture.copies.width, copies(0, texture.size.width));
   const double high = std::max<double>(texture.copies.height, copies(1, texture.size.height));
-  if (wide * high > 1 && !(wide * high * texture.size.area() <= kMostPixels))
-    fail("{} shows its texture {:.0f} x {:.0f} times, which is not supported", where, wide, high);
+  if (wide * high > 1 && !(wide * high * texture.size.area() <= kMostPixels)) {
+    problem =
+        fmt::format("shows its texture {:.0f} x {:.0f} times, which is not supported", wide, high);
+    return {};
+  }
   texture.copies = {static_cast<int>(wide), static_cast<int>(high)};
   TexturedMesh::Corners corners;
   for (std::size_t k = 0; k < 3; ++k) {
     corners[k] = pixel_of(at[k], texture.size);
-    if (!corners[k].allFinite()) fail("{} has a texture coordinate that is too large", where);
+    if (!corners[k].allFinite()) problem = "has a texture coordinate that is too large";
   }
   return corners;
 }

@@ -117,27 +117,33 @@ class TexturedPlyReader {
   }
 
  private:
-  void add(const std::array<Eigen::Vector2d, 3>& uv, double texture, const std::string& where) {
+  // `kind` and `f`: the face's name in messages.
+  void add(const std::array<Eigen::Vector2d, 3>& uv, double texture, const char* kind,
+           std::uint64_t f) {
     const auto textures = header_.texture_files.size();
     if (!(texture >= 0 && texture < static_cast<double>(textures)))
-      fail("{} has texnumber {}, but there are {} textures", where, texture, textures);
+      fail("{}: {} {} has texnumber {}, but there are {} textures", file_, kind, f, texture,
+           textures);
     for (const Eigen::Vector2d& corner : uv)
-      if (!corner.allFinite()) fail("{} has a texcoord that is not finite", where);
+      if (!corner.allFinite()) fail("{}: {} {} has a texcoord that is not finite", file_, kind, f);
     const auto number = static_cast<std::uint32_t>(texture);
-    result_.uv.push_back(textures_.place(number, uv, where));
+    std::string problem;
+    result_.uv.push_back(textures_.place(number, uv, problem));
+    if (!problem.empty()) fail("{}: {} {} {}", file_, kind, f, problem);
     result_.texture_of.push_back(number);
   }
 
   // The triangles of a polygon are a fan, as in read_mesh_ply().
   void add_face(const FaceRow& row, std::uint64_t f) {
-    const std::string where = fmt::format("{}: face {}", file_, f);
     const std::size_t corners = row.corners.size();
     if (row.uv.size() != 2 * corners)
-      fail("{} has {} numbers in texcoord, expected {}", where, row.uv.size(), 2 * corners);
+      fail("{}: face {} has {} numbers in texcoord, expected {}", file_, f, row.uv.size(),
+           2 * corners);
     const auto at = [&](std::size_t k) {
       return Eigen::Vector2d(row.uv[2 * k], row.uv[2 * k + 1]);
     };
-    for (std::size_t k = 2; k < corners; ++k) add({at(0), at(k - 1), at(k)}, row.texture, where);
+    for (std::size_t k = 2; k < corners; ++k)
+      add({at(0), at(k - 1), at(k)}, row.texture, "face", f);
   }
 
   // The corners themselves are read by read_mesh_ply.
@@ -193,8 +199,7 @@ class TexturedPlyReader {
     const VertexCoordinates at = read_vertices(bytes);
     for (std::size_t f = 0; f < result_.mesh.faces.size(); ++f) {
       const auto& [a, b, c] = result_.mesh.faces[f];
-      add({at.uv[a], at.uv[b], at.uv[c]}, at.texture.empty() ? 0.0 : at.texture[a],
-          fmt::format("{}: triangle {}", file_, f));
+      add({at.uv[a], at.uv[b], at.uv[c]}, at.texture.empty() ? 0.0 : at.texture[a], "triangle", f);
     }
   }
 

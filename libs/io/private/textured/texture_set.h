@@ -50,10 +50,11 @@ class TextureSet {
   std::uint32_t add(const TextureSource& source);
 
   // Converts the coordinates (u, v) of a face's corners to pixels of the texture; v counts from the
-  // lower edge. u and v are finite. Error that begins with `where` if the texture would have to be
-  // repeated too often, or if a coordinate does not fit into float.
+  // lower edge. Precondition: u and v are finite. If the texture would have to be repeated too
+  // often, or if a coordinate does not fit into float, `problem` receives a text that can follow
+  // the name of the face. Otherwise `problem` stays empty.
   TexturedMesh::Corners place(std::uint32_t texture, const std::array<Eigen::Vector2d, 3>& uv,
-                              const std::string& where);
+                              std::string& problem);
 
   // Moves the textures to `mesh`, whose coordinates place() returned.
   void finish(TexturedMesh& mesh);
