@@ -115,8 +115,9 @@ void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
 
 // Read a mesh. Faces with more than three corners are split into a fan of triangles. Strips in an
 // element tristrips become triangles. Positions are returned as by the function read_cloud_ply with
-// the same parameters. Error that names the file for a file without an element face or tristrips, a face with fewer than three corners, or a vertex index out
-// of range. Other errors as for read_cloud_ply.
+// the same parameters. Error that names the file for a file without an element face or tristrips, a
+// face with fewer than three corners, or a vertex index out of range. Other errors as for
+// read_cloud_ply.
 Mesh read_mesh_ply(const std::filesystem::path& path);
 Mesh read_mesh_ply(const std::filesystem::path& path, const LocalFrame& frame);
 
@@ -136,8 +137,8 @@ const char* position_properties(const PlyPlacement& placement);
 void append_position(std::string& bytes, const Eigen::Vector3f& position,
                      const PlyPlacement& placement);
 
-// True if the header declares an element face or tristrips with at least one row. Error that names the file for
-// a malformed header.
+// True if the header declares an element face or tristrips with at least one row. Error that names
+// the file for a malformed header.
 bool ply_has_faces(const std::filesystem::path& path);
 
 }  // namespace axial::io
