@@ -47,24 +47,28 @@ fs::path output_of(const Settings& settings, std::size_t tile) {
       .replace_extension(fmt::format(".tile{}-{}.mvs", tile + 1, settings.texture.tiles));
 }
 
-// Error if a file of a tile's mesh with `textures` textures is an input.
-void keep_inputs(const Settings& settings, const texture::Photographs& photographs,
-                 std::size_t tile, std::size_t textures) {
+std::vector<fs::path> inputs_of(const Settings& settings, const texture::Photographs& photographs) {
   const fs::path& scene = settings.scene.scene;
   std::vector<fs::path> inputs = photographs.files();
   inputs.insert(inputs.end(), {scene, io::housing_file(settings.scene), io::lenses_beside(scene),
                                io::geo_offset_beside(scene), settings.photographs.views_file});
   for (const fs::path& file : io::files_of_mesh(settings.mesh)) inputs.push_back(file);
+  return inputs;
+}
+
+// Error if a file of a tile's mesh with `textures` textures is an input.
+void keep_inputs(const Settings& settings, const std::vector<fs::path>& inputs, std::size_t tile,
+                 std::size_t textures) {
   for (const io::TexturedFormat format : settings.formats)
     require_no_inputs(io::textured_files(output_of(settings, tile), format, textures), inputs,
                       "--output-file");
 }
 
-void check_outputs(const Settings& settings, const texture::Photographs& photographs) {
+void check_outputs(const Settings& settings, const std::vector<fs::path>& inputs) {
   std::error_code ignored;
   fs::create_directories(settings.output.parent_path(), ignored);
   for (std::size_t tile = 0; tile < settings.texture.tiles; ++tile) {
-    keep_inputs(settings, photographs, tile, 1);
+    keep_inputs(settings, inputs, tile, 1);
     for (const io::TexturedFormat format : settings.formats)
       for (const fs::path& file : io::textured_files(output_of(settings, tile), format, 1))
         require_writable(file);
@@ -119,6 +123,7 @@ void texture_and_write(const Settings& settings, Mesh mesh, const texture::Photo
                        const LocalFrame& frame, const Eigen::Matrix3d& axes) {
   texture::Options options = with_memory(settings, photographs);
   options.axes = axes;
+  const std::vector<fs::path> inputs = inputs_of(settings, photographs);
   texture::Report facts;
   Written written;
   naming(settings.mesh, [&] {
@@ -128,7 +133,7 @@ void texture_and_write(const Settings& settings, Mesh mesh, const texture::Photo
         options,
         [&](std::size_t tile, const TexturedMesh& textured) {
           return_freed_memory();
-          keep_inputs(settings, photographs, tile, textured.textures.size());
+          keep_inputs(settings, inputs, tile, textured.textures.size());
           written.textures += textured.textures.size();
           written.faces += textured.mesh.faces.size();
           if (tile + 1 == options.tiles) report(written, facts);
@@ -150,7 +155,7 @@ int run(int argc, char** argv) {
   io::SceneWithCameras scene = io::read_scene_with_cameras(settings.scene);
   Mesh mesh = read_mesh(settings, scene.frame);
   const texture::Photographs photographs(scene.scene, settings.scene.scene, settings.photographs);
-  check_outputs(settings, photographs);
+  check_outputs(settings, inputs_of(settings, photographs));
   const LocalFrame frame = scene.frame;
   const Eigen::Matrix3d axes =
       scene.scene.region ? scene.scene.region->rotation : Eigen::Matrix3d::Identity();
