@@ -213,6 +213,18 @@ struct Input {
   bool warned = false;  // of poses that were computed without refraction
 };
 
+// Reports the images that are missing. If missing images are allowed, removes them from the model.
+void leave_out_missing(const Options& options, io::ColmapModel& model) {
+  const std::size_t all = model.images.size();
+  const auto missing = io::remove_missing_images(model, options.image_folder);
+  if (missing.empty()) return;
+  const std::string others =
+      missing.size() > 1 ? fmt::format(", and {} more are missing, of {}", missing.size() - 1, all)
+                         : "";
+  UnusedInput(options.allow_missing)
+      .report(fmt::format("{}: image not found{}", missing.front().string(), others));
+}
+
 Input read_input(const Options& options) {
   Input input;
   input.folder = io::find_colmap_model(options.colmap_folder);
@@ -220,6 +232,7 @@ Input read_input(const Options& options) {
   const io::ColmapModel& model = input.model;
   log_info("{}: {} images, {} cameras, {} points", input.folder.string(), model.images.size(),
            model.cameras.size(), model.points.size());
+  leave_out_missing(options, input.model);
   input.frame = io::enter_local_frame(input.model);
   input.housing = load_housing(options, model, input.warned);
   say_image_folder(options, model);
@@ -306,6 +319,10 @@ int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   const ThreadLimit threads(options.parsed.common.max_threads);
+  if (!options.masks.masks.empty()) {
+    io::write_colmap_masks(options.masks, console_progress("Wrote masks"));
+    return 0;
+  }
   return options.export_folder.empty() ? import_model(options) : export_scene(options);
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/setting_names.h"
 #include "base/unused_input.h"
 #include "base/version.h"
 
@@ -15,7 +16,8 @@ namespace fs = std::filesystem;
 
 // The options before they are checked.
 struct Values {
-  std::string input, output, image_folder = "images/", housing, point_cloud;
+  std::string input, output, image_folder = "images/", housing, point_cloud, mask_path;
+  int mask_label = 0;
   bool normalize = false, force_points = false, undistort = false;
 };
 
@@ -48,7 +50,8 @@ void declare_files(OptionList& visible, Values& values) {
   visible
       .add("input-file,i", &values.input,
            "COLMAP folder: the model is in DIR/sparse, DIR/sparse/0 or DIR; or a scene (.mvs) to "
-           "export to DIR/sparse, where DIR is -o or the scene's folder")
+           "export to DIR/sparse, where DIR is -o or the scene's folder; with --mask-path, the "
+           "folder of the photographs")
       .add("output-file,o", &values.output, "scene to write (default: DIR/scene.mvs)")
       .add_with_default("image-folder", &values.image_folder,
                         "folder of the images, in the working folder or else in DIR (the default: "
@@ -56,6 +59,18 @@ void declare_files(OptionList& visible, Values& values) {
       .add("housing", &values.housing,
            "housing file with the ports of the cameras, or Calibmar's calibration.yaml; written as "
            "<scene>.housing.json");
+}
+
+void declare_masks(OptionList& visible, Values& values) {
+  visible
+      .add(
+          "mask-path", &values.mask_path,
+          "folder with a mask for every image, as for DensifyPointCloud, or one file for all: "
+          "writes these masks as COLMAP wants them (ImageReader.mask_path) into the folder -o, and "
+          "no scene")
+      .add_with_default("ignore-mask-label", &values.mask_label,
+                        "with --mask-path: mask value of the pixels to leave out, which become "
+                        "black");
 }
 
 void declare_changes(OptionList& visible, Values& values) {
@@ -71,6 +86,13 @@ void declare_changes(OptionList& visible, Values& values) {
                         "resolution; 0: in pixels")
       .add_with_default("force-points,e", &values.force_points,
                         "accepted and without effect: sparse points are always written");
+}
+
+std::string mask_option_of(std::string_view setting) {
+  constexpr SettingName kOptions[] = {{"ignore_mask_label", "--ignore-mask-label"},
+                                      {"mask_folder", "--mask-path"},
+                                      {"output", "--output-file"}};
+  return name_in(kOptions, setting);
 }
 
 // The options of an export: the input is a scene.
@@ -113,24 +135,54 @@ void set_import(const Values& values, Options& options) {
   find_image_folder(values.image_folder, options);
 }
 
+// The options of masks for COLMAP: the input is the folder of the photographs.
+void set_masks(const Values& values, Options& options) {
+  const CommonOptions& common = options.parsed.common;
+  std::error_code error;
+  options.masks.images = options.colmap_folder;
+  options.masks.masks = in_working_folder(common, values.mask_path);
+  options.masks.label = values.mask_label;
+  options.masks.output = in_working_folder(common, values.output);
+  options.masks.name_of = mask_option_of;
+  if (!fs::is_directory(options.masks.images, error))
+    fail("--input-file {}: must be the folder of the photographs, because --mask-path is given",
+         values.input);
+  if (!fs::exists(options.masks.masks, error)) fail("--mask-path {}: not found", values.mask_path);
+  if (values.output.empty())
+    fail("--mask-path {}: needs --output-file, the folder for COLMAP's masks", values.mask_path);
+  if (values.mask_label < 0 || values.mask_label > 65535)
+    fail("--ignore-mask-label {}: must be from 0 to 65535", values.mask_label);
+  for (const char* name : {"image-folder", "housing", "undistort", "pointcloud-file", "normalize"})
+    if (given(options.parsed, name))
+      fail("--{}: contradicts --mask-path, which writes no scene", name);
+}
+
 }  // namespace
 
 Options parse_command_line(int argc, const char* const* argv) {
   Values values;
   Options options;
-  ProgramOptions program{
-      "InterfaceCOLMAP",
-      "converts a COLMAP model and its images to a scene (.mvs), or a scene to a COLMAP model",
-      {},
-      {}};
+  ProgramOptions program{"InterfaceCOLMAP",
+                         "converts a COLMAP model and its images to a scene (.mvs), a scene to a "
+                         "COLMAP model, or masks "
+                         "to COLMAP's masks",
+                         {},
+                         {}};
   program.version = version_line(program.name);
   // In the order of --help.
   declare_files(program.visible, values);
   declare_changes(program.visible, values);
+  declare_masks(program.visible, values);
   UnusedInput::declare(program.visible, options.allow_missing);
   options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
   options.colmap_folder = in_working_folder(options.parsed.common, values.input);
+  if (!values.mask_path.empty()) {
+    set_masks(values, options);
+    return options;
+  }
+  if (given(options.parsed, "ignore-mask-label"))
+    fail("--ignore-mask-label {}: is only for --mask-path", values.mask_label);
   const bool is_export = options.colmap_folder.extension() == ".mvs";
   (is_export ? set_export : set_import)(values, options);
   return options;

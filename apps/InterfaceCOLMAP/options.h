@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/program.h"
+#include "io/colmap/colmap_masks.h"
 
 namespace axial::apps {
 
@@ -18,8 +19,11 @@ struct Options {
   // A folder that --image-folder could mean, too, and that is not used. Empty: there is none.
   std::filesystem::path other_image_folder;
   std::filesystem::path housing_file;  // empty: no housing
-  std::filesystem::path point_cloud;   // for an export; empty: the scene's own points
-  bool allow_missing = false;          // no error if the housing gives no image a port
+  // Masks of photographs to write for COLMAP; `masks.masks` is empty in an import and an export.
+  io::ColmapMasks masks;
+  std::filesystem::path point_cloud;  // for an export; empty: the scene's own points
+  bool allow_missing =
+      false;  // images that are missing, and a housing without images, are left out
   bool normalize = false;
   std::optional<bool> undistort;  // empty: only if no image is behind a port
 };

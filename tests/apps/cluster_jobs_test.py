@@ -56,7 +56,7 @@ class Jobs(InFolder):
                  "lens_model": "OPENCV",
                  "refine_poses": "", "densify": "", "mesh": "", "refine_mesh": "", "texture": "",
                  "map": "", "compare": "", "page": "", "tiles": 1, "until": "cloud", "without": "",
-                 "earlier": "", "truth": "", "programs": "bin", **more}
+                 "earlier": "", "truth": "", "programs": "bin", "masks": "", "ignore_mask_label": "", **more}
         with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
             return jobs.Survey({"given": given, "images": images,
                                 "node": {"cpus": 64, "memory_mb": 10**6}}, reconstruct_steps.steps)

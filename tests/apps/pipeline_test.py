@@ -13,7 +13,7 @@ import unittest
 import unittest.mock
 
 from pipeline_folder import PIPELINE, InFolder
-from programs import main
+from programs import grey_png, main
 
 from axial_pipeline import (colmap, files, lens, positions, reconstruct_options, reconstruct_steps,
                             run_file, running, steps, versions)
@@ -106,7 +106,8 @@ class ColmapModelCommand(InFolder):
     def setUp(self):
         super().setUp()
         self.put_script("bin/colmap", COLMAP)
-        (self.folder / "images").mkdir()
+        for number in range(2):
+            self.write(f"images/{number}.png", grey_png([bytes(4)] * 3))
 
     def run_it(self, *more):
         command = [sys.executable, "-B", str(PIPELINE / "colmap-model"), "--images", "images",

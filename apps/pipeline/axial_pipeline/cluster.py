@@ -12,8 +12,9 @@ import subprocess
 
 from . import files, jobs
 from .failure import Failure
+from .ownership import ORDER
 from .running import die_with, ending
-from .steps import Records, chain_to, digest, is_done, read_record
+from .steps import Records, chain_to, digest, is_done, names_from, read_record
 
 
 def check(given):
@@ -34,8 +35,7 @@ def forget_what_changed(todo, out):
     for number, step in enumerate(todo):
         chain = [*chain, step.command, step.fingerprint()]
         if not is_done(step, chain, records):
-            for later in todo[number:]:
-                records.forget(later)
+            records.forget(names_from(number, todo, ORDER))
             break
     parts = {"densify": ["plan", "depth-*", "densify-tile-*"], "mesh": ["mesh-tile-*"]}
     for name in {step.name for step in todo} & set(parts):

@@ -39,10 +39,11 @@ def on_the_cpu(command, families, threads=None):
     return []
 
 
-def features(database, images, camera_model, parameters=None, threads=None):
+def features(database, images, camera_model, parameters=None, threads=None, masks=None):
     """Extracts features. All photographs share one camera. `parameters`: those that the camera
-    starts with, in COLMAP's order."""
+    starts with, in COLMAP's order. `masks`: a folder with COLMAP's masks (masks.py)."""
     start = ["--ImageReader.camera_params", parameters] if parameters else []
+    start += ["--ImageReader.mask_path", masks] if masks else []
     return ["colmap", "feature_extractor", "--database_path", database, "--image_path", images,
             "--ImageReader.single_camera", 1, "--ImageReader.camera_model", camera_model, *start,
             *on_the_cpu("feature_extractor", EXTRACTION, threads)]

@@ -3,11 +3,19 @@
 
 import argparse
 import dataclasses
+import json
+import os
 import pathlib
+import sys
 
-from . import colmap, files
+from . import colmap, files, masks, ownership, photographs, still_features
 from .failure import Failure, run_main
+from .programs import Programs, default_folder
 from .running import logged
+
+RECORD = "colmap-model.json"  # what a run makes, below the output folder
+WRITES = ["model", "models", "masks", "database.db", "database.db-*", "masks.log", "features.log",
+          "matches.log", "mapper.log", still_features.FOUND, still_features.MASK]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -18,21 +26,39 @@ class Calibration:
     refine: bool  # whether COLMAP refines the parameters; otherwise they are fixed
 
 
-def colmap_model(images, work, calibration, threads=None):
+def claim(work):
+    """Fails if `work` has files that a run would replace and no earlier run made. Otherwise writes the
+    record of this run."""
+    makes = files.read_object(work / RECORD).get("makes", [])
+    ownership.refuse(work, sorted(
+        {name for pattern in WRITES if pattern not in makes for name in ownership.existing(work, pattern)}
+        | ({RECORD} if os.path.lexists(work / RECORD) and not makes else set())))
+    work.mkdir(parents=True, exist_ok=True)
+    files.write(work / RECORD, json.dumps({"makes": WRITES}))
+
+
+def colmap_model(images, work, calibration, threads=None, mask_command=None):
     """Writes the model with the most images to `work`/model, and COLMAP's output to
     `work`/features.log, matches.log and mapper.log. Does nothing if `work`/model exists, because
-    COLMAP gives a different model in each run. `threads`: of COLMAP, -1 for one on each core."""
+    COLMAP gives a different model in each run. Fails if `work` has files of others with the names of
+    its results. `threads`: of COLMAP, -1 for one on each core. `mask_command`: writes COLMAP's masks
+    into `work`/masks (masks.py)."""
     model, models, database = work / "model", work / "models", work / "database.db"
     if colmap.is_model(model):
         print(f"  (kept from an earlier run: {model})", flush=True)
         return
     colmap.check_installed()
-    for path in (model, models, *colmap.database_files(database)):
+    claim(work)
+    for path in (model, models, work / "masks", *colmap.database_files(database)):
         files.clear(path)  # COLMAP would add to the results of a killed run
     models.mkdir(parents=True)
+    if mask_command:
+        print("  masks", flush=True)
+        logged(mask_command, work / "masks.log")
     print("  features", flush=True)
-    logged(colmap.features(database, images, calibration.model, calibration.parameters, threads),
-           work / "features.log")
+    logged(colmap.features(database, images, calibration.model, calibration.parameters, threads,
+                           work / "masks" if mask_command else None), work / "features.log")
+    still_features.look(database, work, work / "features.log", is_masked=bool(mask_command))
     print("  matches of all pairs", flush=True)
     logged(colmap.matches(database, "exhaustive", threads), work / "matches.log")
     print("  poses", flush=True)
@@ -52,6 +78,10 @@ def options():
     parser.add_argument("--camera-model", required=True, help="of COLMAP: PINHOLE, OPENCV, ...")
     parser.add_argument("--camera-parameters", required=True,
                         help="of the camera model, in COLMAP's order, separated by commas")
+    masks.add_options(parser)
+    parser.add_argument("--programs", default=os.environ.get("AXIAL_BIN", str(default_folder(
+                            pathlib.Path(sys.argv[0]).resolve().parent))),
+                        help="folder of the programs, for --masks (default: %(default)s)")
     parser.add_argument("--refine", action="store_true",
                         help="COLMAP refines focal lengths and distortion (default: they are fixed)")
     parser.add_argument("-o", "--output", required=True, type=pathlib.Path,
@@ -62,12 +92,17 @@ def options():
 
 
 def run(given):
-    if not given.images.is_dir():
-        raise Failure(f"--images {given.images}: is not a folder")
+    for name, value in vars(given).items():
+        photographs.require_utf8(f"--{name.replace('_', '-')}", value)
     if given.max_threads < 0:
         raise Failure(f"--max-threads {given.max_threads}: must not be negative")
+    photographs.check(given.images)
+    masks.check(given, given.output / "masks")
+    mask_command = None
+    if given.masks:
+        mask_command = masks.command(Programs(given.programs), given, given.output / "masks")
     calibration = Calibration(given.camera_model, given.camera_parameters, given.refine)
-    colmap_model(given.images, given.output, calibration, threads=given.max_threads or -1)
+    colmap_model(given.images, given.output, calibration, given.max_threads or -1, mask_command)
 
 
 def main():

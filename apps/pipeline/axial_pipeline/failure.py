@@ -23,12 +23,14 @@ def run_main(name, main, stopped):
     """Runs `main`. If `main` fails, ends the process with exit code 1 and one line, which begins with
     `name`. `stopped`: the text of this line if the user interrupts `main`."""
     open_standard_streams()
+    if sys.stdout:
+        sys.stdout.reconfigure(errors="backslashreplace")  # names of files may have any bytes
     try:
         main()
     except Failure as failure:
         sys.exit(f"{name}: {failure}")
     except OSError as error:  # for example a full disk
         file = f"{error.filename}: " if error.filename else ""
-        sys.exit(f"{name}: {file}{error.strerror}")
+        sys.exit(f"{name}: {file}{error.strerror or error}")
     except KeyboardInterrupt:
         sys.exit(f"{name}: {stopped}")

@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writing and removing files. No file is ever half written under its final name."""
 
+import json
+import os
 import pathlib
 import shutil
 
+from .failure import Failure
 
-def write(path, text):
+
+def write(path, content):
+    """`content`: text or bytes."""
     temporary = path.with_name(path.name + ".tmp")
-    temporary.write_text(text)
+    temporary.write_bytes(content if isinstance(content, bytes) else content.encode())
     temporary.rename(path)
 
 
@@ -26,8 +31,39 @@ def count(folder):
 
 
 def clear(path):
-    """Removes a file or a folder, if there is one."""
-    if path.is_dir():
+    """Removes a file, a folder or a link, if there is one. What a link leads to stays."""
+    if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path)
-    elif path.exists():
+    elif os.path.lexists(path):
         path.unlink()
+
+
+def below(folder):
+    """All files and folders below `folder`, sorted. Links are followed, each folder is visited once."""
+    found, visited = [], set()
+    for root, folders, names in os.walk(folder, followlinks=True):
+        place = os.path.realpath(root)
+        if place in visited:
+            folders.clear()
+            continue
+        visited.add(place)
+        found += [pathlib.Path(root) / name for name in (*folders, *names)]
+    return sorted(found)
+
+
+def read_object(path):
+    """The JSON object in a file; empty if there is no such file or if it is damaged."""
+    try:
+        value = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return {}
+    return value if isinstance(value, dict) else {}
+
+
+def resolved(option, path):
+    """`path` as an absolute path without links. `option`: its name, for the Failure of a link that
+    leads to itself."""
+    try:
+        return pathlib.Path(path).resolve()
+    except (OSError, RuntimeError):  # RuntimeError: Python 3.11 and older
+        raise Failure(f"{option} {path}: is a link that leads to itself") from None

@@ -22,7 +22,8 @@ MOST_CPUS = 16  # of a job
 
 # What the job of a step asks for at first: megabytes, megabytes an image, minutes, minutes an image.
 # The plan of DensifyPointCloud replaces these numbers for the step "densify".
-NEEDS = {"features": (8000, 0, 30, 0.1), "matches": (8000, 0, 60, 1), "poses": (4000, 4, 60, 1),
+NEEDS = {"masks": (2000, 0, 30, 0.05),
+         "features": (8000, 0, 30, 0.1), "matches": (8000, 0, 60, 1), "poses": (4000, 4, 60, 1),
          "refine": (2000, 4, 60, 0.2), "import": (2000, 2, 30, 0.02), "plan": (2000, 2, 30, 0.02),
          "densify": (4000, 0, 60, 0.2), "mesh": (8000, 4, 60, 0.5),
          "refine-mesh": (8000, 4, 60, 1), "texture": (8000, 4, 60, 0.5), "map": (8000, 4, 60, 0.5),
@@ -175,11 +176,11 @@ class Survey:
         if tile:
             whole, chain = self.step(tile[1])
             command = [*without_export(whole.command), "--tile", tile[2].replace("of", "/")]
-            return Step(name, command, makes=self.out, reads=whole.reads), chain
+            return Step(name, command, makes=self.out, reads=whole.reads, writes=whole.writes), chain
         densify = self.steps[self.names.index("densify")]
         more = ["--plan", self.out / PLAN] if name == "plan" else part_options(name)
         return (Step(name, [*without_export(densify.command), *more], makes=self.out,
-                     reads=densify.reads),
+                     reads=densify.reads, writes=densify.writes),
                 chain_to("densify", self.steps))
 
 

@@ -27,6 +27,11 @@ class Programs:
         return [self.folder / "InterfaceCOLMAP", "-i", model, "--image-folder", images, *port, "-o",
                 scene]
 
+    def colmap_masks(self, images, masks, folder, label):
+        """The masks of photographs as COLMAP wants them, in `folder`. `label`: of masked pixels."""
+        return [self.folder / "InterfaceCOLMAP", "-i", images, "--mask-path", masks,
+                "--ignore-mask-label", label, "-o", folder]
+
     def densify(self, scene, folder, *options):
         """`scene` to depth maps and a dense cloud in `folder`."""
         return [self.folder / "DensifyPointCloud", "-i", scene, "-w", folder, *options]

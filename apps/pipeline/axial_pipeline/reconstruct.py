@@ -15,10 +15,9 @@ nodes of a cluster compute the depth maps (docs/cluster.md).
 """
 
 import fcntl
-import json
 import pathlib
 
-from . import cluster, files
+from . import cluster, files, ownership, still_features
 from .failure import Failure, run_main
 from .reconstruct_options import check, options, wanted_steps
 from .reconstruct_steps import best_mesh, steps
@@ -43,14 +42,27 @@ def lines_of_poses(refined):
                    f"{value['unit']}, {sigma}")
 
 
+def lines_of_accuracy(evaluation):
+    accuracy = evaluation["accuracy"]
+    yield (f"- mean distance to the truth {1e3 * accuracy['mean']:.3f} mm, median "
+           f"{1e3 * accuracy['median']:.3f} mm, {accuracy['count']} points")
+
+
+def lines_from(file, lines_of):
+    """The lines that `lines_of` makes of the JSON object in `file`."""
+    try:
+        return list(lines_of(files.read_object(file)))
+    except (LookupError, TypeError, ValueError, AttributeError):
+        raise Failure(f"{file}: is damaged, or of another version; remove it, and the same command makes "
+                      "it again") from None
+
+
 def report(out, seconds):
     """The text of report.md. `seconds`: the time of each step."""
-    refined = json.loads((out / "refined" / "report.json").read_text())
-    lines = ["# Reconstruction", "", *lines_of_poses(refined)]
+    lines = ["# Reconstruction", "", *lines_from(out / "refined" / "report.json", lines_of_poses)]
     if "evaluate" in seconds:
-        accuracy = json.loads((out / "evaluation.json").read_text())["accuracy"]
-        lines.append(f"- mean distance to the truth {1e3 * accuracy['mean']:.3f} mm, median "
-                     f"{1e3 * accuracy['median']:.3f} mm, {accuracy['count']} points")
+        lines += lines_from(out / "evaluation.json", lines_of_accuracy)
+    lines += [f"- warning: {line}" for line in still_features.lines_about(out)]
     lines += ["", "| step | seconds |", "|---|---|"]
     lines += [f"| {name} | {time} |" for name, time in seconds.items()]
     return "\n".join(lines) + "\n"
@@ -60,7 +72,7 @@ def only_run_in(out):
     """Refuses other runs in the folder `out` until the returned file is closed. The commands of steps
     do not inherit the file, so that the refusal ends with this process. With --cluster, snakemake
     inherits the file, so that the refusal ends when both processes have ended."""
-    lock = open(out / "lock", "w")
+    lock = open(out / "lock", "a")
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -90,12 +102,15 @@ def results_of(given, out):
 def reconstruct(given):
     check(given)
     out = pathlib.Path(given.output)
+    todo = list(steps(given, out))
+    ownership.check(out, [step.name for step in todo], bool(given.cluster))
     out.mkdir(parents=True, exist_ok=True)
     with only_run_in(out) as lock:
-        todo = list(steps(given, out))
         seconds = (cluster.run_all(todo, given, out, lock) if given.cluster
-                   else run_all(todo, out))
+                   else run_all(todo, out, ownership.ORDER))
         files.write(out / "report.md", report(out, seconds))
+    for line in still_features.lines_about(out):
+        print(f"warning: {line}")
     print(results_of(given, out))
 
 

@@ -6,8 +6,9 @@ import os
 import pathlib
 import shlex
 
-from . import cluster, colmap, matching, positions
+from . import cluster, colmap, files, masks, matching, photographs, positions
 from .failure import Failure
+from .ownership import ORDER, is_record
 from .programs import Programs, default_folder
 
 PROGRAMS = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh",
@@ -33,6 +34,7 @@ def options(script_folder, description):
     parser.add_argument("-o", "--output", required=True, help="folder for all output files")
     parser.add_argument("--scale-from", default="",
                         help="known lengths or positions [m], as for RefinePoses")
+    masks.add_options(parser)
     parser.add_argument("--refine", default="",
                         help="further unknowns, as for RefinePoses")
     parser.add_argument("--matcher", choices=matching.MATCHERS, default="exhaustive",
@@ -144,15 +146,50 @@ def check_results(given):
         raise Failure(f"--earlier {given.earlier}: needs the mesh, which --until cloud does not make")
 
 
+# Records of versions that stated no time have only the time of the file, which a copy changes a bit.
+COPIED_WITHIN = 60  # seconds
+
+
+def end_of(step, out):
+    """When the step of this name ended in the folder `out`, and the uncertainty [s]. None if it is
+    not done."""
+    path = out / "steps" / f"{step}.done.json"
+    record = files.read_object(path)
+    if not is_record(record):
+        return None
+    ended = record.get("ended")
+    return (ended, 0) if isinstance(ended, (int, float)) else (path.stat().st_mtime, COPIED_WITHIN)
+
+
+def is_current(step, out):
+    """Whether the result of the step of this name was made from the present results of the steps
+    before it."""
+    needed = [name for name in ORDER[:ORDER.index(step) + 1] if name not in ("masks", "refine-mesh")]
+    ends = [end_of(name, out) for name in dict.fromkeys([*needed, step])]
+    return all(ends) and all(later + doubt >= earlier for (earlier, _), (later, doubt)
+                             in zip(ends, ends[1:]))
+
+
 def mesh_of_earlier_survey(path):
-    """`path`: a mesh, or the output folder of `reconstruct`."""
+    """`path`: a mesh, or the output folder of `reconstruct`. Of the folder, the refined mesh is used
+    unless it was made from another mesh than the one that is there now."""
     if not path.is_dir():
         return path
-    meshes = [path / f"scene_dense_{name}.ply" for name in ("refined", "mesh")]
-    found = next(filter(pathlib.Path.exists, meshes), None)
+    refined, mesh = (path / f"scene_dense_{name}.ply" for name in ("refined", "mesh"))
+    found = next(filter(pathlib.Path.exists, (refined, mesh)), None)
     if not found:
-        raise Failure(f"--earlier {path}: has neither {meshes[0].name} nor {meshes[1].name}")
-    return found
+        raise Failure(f"--earlier {path}: has neither {refined.name} nor {mesh.name}")
+    if not any(is_record(files.read_object(record)) for record in (path / "steps").glob("*.json")):
+        return found
+    if refined.exists() and is_current("refine-mesh", path):
+        return refined
+    if not mesh.exists() or not is_current("mesh", path):
+        raise Failure(f"--earlier {path}: its mesh is older than its cloud, or was not completed: run "
+                      "that reconstruction again, or name the file of a mesh")
+    if refined.exists():
+        print(f"--earlier {path}: {refined.name} was made from an older mesh; {mesh.name} is used",
+              flush=True)
+    return mesh
 
 
 def is_own_mesh(mesh, out):
@@ -163,12 +200,15 @@ def is_own_mesh(mesh, out):
 def check(given):
     """Checks everything that can be known before hours of work, and makes all paths absolute,
     because the programs look up relative paths in different folders."""
+    for name, value in vars(given).items():
+        photographs.require_utf8(f"--{name.replace('_', '-')}", value)
     for name in ("images", "lens", "housing", "truth", "earlier", "programs"):
         path = getattr(given, name)
         if path and not pathlib.Path(path).exists():
             raise Failure(f"--{name} {path}: not found")
         if path:
-            setattr(given, name, str(pathlib.Path(path).resolve()))
+            setattr(given, name, str(files.resolved(f"--{name}", path)))
+    masks.check(given, pathlib.Path(given.output) / "masks")
     file = positions.file_of(given.scale_from)
     if file is not None:
         if not pathlib.Path(file).is_file():
@@ -190,8 +230,9 @@ def check(given):
     if given.snakemake and not given.cluster:
         raise Failure(f"--snakemake {given.snakemake}: is only for --cluster")
     colmap.check_installed()
+    photographs.check(given.images)
     matching.check(given)
-    given.output = str(pathlib.Path(given.output).resolve())
+    given.output = str(files.resolved("--output", given.output))
     if given.earlier and is_own_mesh(pathlib.Path(given.earlier), pathlib.Path(given.output)):
         raise Failure(f"--earlier {given.earlier}: this run replaces this mesh; give another --output")
     if pathlib.Path(given.output).is_relative_to(given.images):

@@ -3,11 +3,13 @@
 
 import pathlib
 
-from . import colmap, lens, matching, positions
+from . import colmap, lens, masks, matching, positions, still_features
+from .option_files import read_by
+from .ownership import WRITES
 from .programs import Programs
 from .reconstruct_options import wanted_steps, words_of
 from .run_file import write_run
-from .steps import Files, Step, Tiles
+from .steps import Files, Report, Step, Tiles
 
 
 def take_largest(models):
@@ -21,20 +23,30 @@ def take_largest(models):
     best.rename(models / "best")
 
 
+def masks_of(given, out):
+    """The folder of COLMAP's masks; None without --masks."""
+    return out / "masks" if given.masks else None
+
+
 def colmap_steps(given, out):
     features, database, models = out / "features.db", out / "database.db", out / "colmap"
     start = lens.start_under_water(given.lens, given.lens_model)
-    yield Step("features", colmap.features(features, given.images, given.lens_model, start),
-               makes=features, reads=[given.images], changed=colmap.database_files(features))
+    folder = masks_of(given, out)
+    if folder:
+        yield Step("masks", masks.command(Programs(given.programs), given, folder), makes=folder,
+                   reads=[given.masks, given.images], anew=[folder])
+    yield Step("features", colmap.features(features, given.images, given.lens_model, start,
+                                           masks=folder),
+               makes=features, reads=[given.images],
+               changed=[*colmap.database_files(features), out / still_features.FOUND],
+               after=lambda: still_features.look(features, out, out / "logs" / "features.log",
+                                                is_masked=bool(given.masks)))
     yield matching.step(given, features, database)
     yield Step("poses", colmap.mapper(database, given.images, models), makes=models / "best",
                anew=[models], before=models.mkdir, after=lambda: take_largest(models))
 
 
-def existing_files(words):
-    """The files and folders that `words` of a command name, also as --option=path."""
-    paths = [word.partition("=")[2] if word.startswith("--") else word for word in words]
-    return [path for path in paths if path and pathlib.Path(path).exists()]
+WITH_MASKS = ("densify", "refine-mesh", "texture")  # "map" gets those of "texture"
 
 
 def refine_options(given):
@@ -52,6 +64,19 @@ def mask_words(words, given_again):
         if option in ("--mask-path", "--ignore-mask-label") and option not in again:
             kept += [word] if equals else [word, value]
     return kept
+
+
+def options_for(names, given, out):
+    """The words of the options --`name` for programs, with --masks for the programs that take masks."""
+    words = {name: words_of(name, given) for name in names}
+    return {name: [*(masks.words(given, masks_of(given, out), own) if name in WITH_MASKS else []), *own]
+            for name, own in words.items()}
+
+
+def reads_of(name, command, given):
+    """The files and folders that the option --`name` lets a program read, which `command` runs. Not the
+    masks of this run: the step "masks" has read those of the user."""
+    return read_by(command, words_of(name, given))
 
 
 def tile_options(option, given):
@@ -79,29 +104,35 @@ def mesh_steps(given, out):
     """The steps from the cloud to the mesh and its textures."""
     programs, scene, refractive = Programs(given.programs), out / "scene_dense.mvs", ("--refractive", 1)
     mesh, refined, textured = meshes(out)
-    options = {name: words_of(name, given) for name in ("mesh", "refine-mesh", "texture")}
-    reads = {name: existing_files(words) for name, words in options.items()}
+    options = options_for(("mesh", "refine-mesh", "texture"), given, out)
     wanted = wanted_steps(given)
     if "mesh" in wanted:
-        yield Step("mesh", programs.reconstruct_mesh(scene, mesh, *refractive,
-                                                     *tile_options("--tiles", given),
-                                                     *options["mesh"]),
-                   makes=mesh, reads=reads["mesh"])
+        command = programs.reconstruct_mesh(scene, mesh, *refractive, *tile_options("--tiles", given),
+                                            *options["mesh"])
+        yield Step("mesh", command, makes=mesh, reads=reads_of("mesh", command, given))
     if "refine-mesh" in wanted:
-        yield Step("refine-mesh", programs.refine_mesh(scene, mesh, refined, *refractive,
-                                                       *options["refine-mesh"]),
-                   makes=refined, reads=reads["refine-mesh"])
+        command = programs.refine_mesh(scene, mesh, refined, *refractive, *options["refine-mesh"])
+        yield Step("refine-mesh", command, makes=refined, reads=reads_of("refine-mesh", command, given))
     if "texture" in wanted:
-        yield Step("texture", programs.texture_mesh(scene, best_mesh(given, out), textured,
-                                                    "--export-type", "glb,ply", *refractive,
-                                                    *tile_options("--tiles", given),
-                                                    *options["texture"]),
+        command = programs.texture_mesh(scene, best_mesh(given, out), textured, "--export-type", "glb,ply",
+                                        *refractive, *tile_options("--tiles", given), *options["texture"])
+        yield Step("texture", command,
                    makes=Tiles(out, f"scene_textured.tile*-{given.tiles}.glb") if given.tiles > 1
                    else Files(textured.with_suffix(".glb"), textured.with_suffix(".ply")),
-                   reads=reads["texture"])
+                   reads=reads_of("texture", command, given))
 
 
 RUN_FILE = "run.json"
+
+
+class made_before:
+    """The files that an earlier run of the step `name` made, looked for when they are removed."""
+
+    def __init__(self, name, out):
+        self.name, self.out = name, out
+
+    def __iter__(self):
+        return (path for pattern in WRITES[self.name] for path in self.out.glob(pattern))
 
 
 def words_about_results(given, out):
@@ -143,49 +174,55 @@ def words_about_surveys(given, scene, words):
 def survey_steps(given, out):
     """The steps from the mesh to maps, to the comparison with an earlier survey, and to the page."""
     programs, scene, refractive = Programs(given.programs), out / "scene_dense.mvs", ("--refractive", 1)
-    options = {name: words_of(name, given) for name in ("texture", "map", "compare", "page")}
-    reads = {name: existing_files(words) for name, words in options.items()}
+    options = options_for(("texture", "map", "compare", "page"), given, out)
     wanted, whole = wanted_steps(given), whole_mesh(given, out)
     if "map" in wanted:
-        yield Step("map", programs.map_surface(scene, whole, out / "scene_map", *refractive,
-                                               *mask_words(options["texture"], options["map"]),
-                                               *options["map"]),
+        command = programs.map_surface(scene, whole, out / "scene_map", *refractive,
+                                       *mask_words(options["texture"], options["map"]), *options["map"])
+        yield Step("map", command,
                    makes=Files(*(out / f"scene_map.{kind}.tif" for kind in ("dem", "ortho", "views"))),
-                   reads=reads["map"] + reads["texture"],
-                   anew=[out / "scene_map.sigma.tif"])  # not every command writes it again
+                   reads=[*reads_of("map", command, given), *reads_of("texture", command, given)],
+                   anew=made_before("map", out))  # not every command writes all of them again
     if "compare" in wanted:
-        yield Step("compare", programs.compare_surveys(
-                       given.earlier, best_mesh(given, out), out / "scene_change",
-                       *words_about_surveys(given, scene, options["compare"]), *options["compare"]),
-                   makes=out / "scene_change.json",
-                   reads=[given.earlier, earlier_scene(given, scene), *reads["compare"]])
+        command = programs.compare_surveys(given.earlier, best_mesh(given, out), out / "scene_change",
+                                           *words_about_surveys(given, scene, options["compare"]),
+                                           *options["compare"])
+        yield Step("compare", command, makes=out / "scene_change.json",
+                   reads=[given.earlier, earlier_scene(given, scene), *reads_of("compare", command, given)],
+                   anew=made_before("compare", out))
     if "page" in wanted:
-        yield Step("page", programs.view_scene(scene, out / "scene_dense.ply", whole, out / "page",
-                                               *refractive, *words_about_results(given, out),
-                                               *options["page"]),
-                   makes=out / "page" / "index.html",
-                   reads=[*reads["page"], *([given.truth] if given.truth else [])],
+        command = programs.view_scene(scene, out / "scene_dense.ply", whole, out / "page", *refractive,
+                                      *words_about_results(given, out), *options["page"])
+        yield Step("page", command, makes=out / "page" / "index.html",
+                   reads=[*reads_of("page", command, given), *([given.truth] if given.truth else [])],
                    before=lambda: write_run_before("page", given, out))
 
 
 def steps(given, out):
-    programs, densify = Programs(given.programs), words_of("densify", given)
+    """The steps of a run with the options `given` in the folder `out`, in order."""
+    for step in steps_without_names_of_files(given, out):
+        step.writes = WRITES[step.name]
+        yield step
+
+
+def steps_without_names_of_files(given, out):
+    programs, densify = Programs(given.programs), options_for(["densify"], given, out)["densify"]
     refined, scene, cloud = out / "refined", out / "scene.mvs", out / "scene_dense.ply"
     known_positions = positions.file_of(given.scale_from)
     yield from colmap_steps(given, out)
-    yield Step("refine", programs.refine_poses(out / "colmap" / "best", given.lens, given.housing,
-                                               refined, *refine_options(given)),
-               makes=refined / "report.json",
+    command = programs.refine_poses(out / "colmap" / "best", given.lens, given.housing, refined,
+                                    *refine_options(given))
+    yield Step("refine", command, makes=Report(refined / "report.json"),
                reads=[given.lens, given.housing, *([known_positions] if known_positions else []),
-                      *existing_files(words_of("refine-poses", given))])
-    yield Step("import", programs.import_scene(refined, given.images, scene,
-                                               refined / "housing.json"), makes=scene)
-    yield Step("densify", programs.densify(scene, out, "--refractive", 1,
-                                           *tile_options("--fusion-tiles", given), *densify),
-               makes=cloud, reads=existing_files(densify))
+                      *reads_of("refine-poses", command, given)])
+    command = programs.import_scene(refined, given.images, scene, refined / "housing.json")
+    yield Step("import", command, makes=scene, reads=read_by(command, []))
+    command = programs.densify(scene, out, "--refractive", 1, *tile_options("--fusion-tiles", given),
+                               *densify)
+    yield Step("densify", command, makes=cloud, reads=reads_of("densify", command, given))
     yield from mesh_steps(given, out)
     yield from survey_steps(given, out)
     if given.truth:
-        yield Step("evaluate", programs.evaluate(cloud, given.truth, "--json",
-                                                 out / "evaluation.json", "--align", "icp"),
-                   makes=out / "evaluation.json", reads=[given.truth])
+        command = programs.evaluate(cloud, given.truth, "--json", out / "evaluation.json", "--align", "icp")
+        yield Step("evaluate", command, makes=Report(out / "evaluation.json"),
+                   reads=[given.truth, *read_by(command, [])])

@@ -5,6 +5,7 @@ step that differs."""
 
 import hashlib
 import json
+import math
 import pathlib
 import shlex
 import time
@@ -21,10 +22,11 @@ class Step:
     `anew`: paths that are removed before the command starts, because the command would add to them.
     `changed`: paths that are removed only if an earlier step or an input changed, because otherwise
     the command continues with them. `before`, `after`: functions, called before the command and
-    after its success."""
+    after its success. `writes`: what the record says that the step may write or remove, as in
+    ownership.WRITES."""
 
     def __init__(self, name, command, makes, reads=(), anew=(), changed=(), before=lambda: None,
-                 after=lambda: None):
+                 after=lambda: None, writes=()):
         self.name = name
         self.command = [str(word) for word in command]
         self.makes = makes
@@ -33,12 +35,13 @@ class Step:
         self.changed = changed
         self.before = before
         self.after = after
+        self.writes = list(writes)
 
     def fingerprint(self):
         """Names, sizes and times of change of all files that the step reads."""
         found = []
         for path in self.reads:
-            found += sorted(path.rglob("*")) if path.is_dir() else [path]
+            found += files.below(path) if path.is_dir() else [path]
         return [[str(file), file.stat().st_size, file.stat().st_mtime_ns]
                 for file in found if file.is_file()]
 
@@ -64,13 +67,22 @@ class Tiles:
         return any(self.folder.glob(self.pattern))
 
 
+class Report:
+    """The result of a step that makes a file of JSON. A damaged file does not exist."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def exists(self):
+        return bool(files.read_object(self.path))
+
+
 def read_record(path):
     """A record; empty if there is none or if it is damaged."""
-    try:
-        record = json.loads(path.read_text())
-    except (OSError, ValueError):
-        return {}
-    return record if isinstance(record, dict) else {}
+    record = files.read_object(path)
+    seconds = record.get("seconds", 0)
+    is_whole = isinstance(seconds, (int, float)) and math.isfinite(seconds)
+    return {"seconds": 0, **record} if record and is_whole else {}
 
 
 def digest(chain):
@@ -92,8 +104,10 @@ class Records:
     def write(self, step, state, record):
         files.write(self.folder / f"{step.name}.{state}.json", json.dumps(record))
 
-    def forget(self, step):
-        files.clear(self.folder / f"{step.name}.done.json")
+    def forget(self, names):
+        """Removes the records that the steps with these names are done."""
+        for name in names:
+            files.clear(self.folder / f"{name}.done.json")
 
 
 def chain_to(name, todo):
@@ -116,21 +130,30 @@ def perform(step, chain, records, logs, limits=()):
     changed = records.read(step, "begun").get("chain") != digest(chain)
     for path in [*step.anew, *(step.changed if changed else [])]:
         files.clear(path)
-    records.write(step, "begun", {"chain": digest(chain)})
+    makes = {"makes": step.writes} if step.writes else {}
+    records.write(step, "begun", {"chain": digest(chain), **makes})
     begin = time.monotonic()
     logs.mkdir(exist_ok=True)
     step.before()
     logged([*step.command, *limits], logs / f"{step.name}.log", step.name)
     step.after()
     seconds = round(time.monotonic() - begin, 1)
-    records.write(step, "done", {"chain": digest(chain), "seconds": seconds,
+    records.write(step, "done", {"chain": digest(chain), "seconds": seconds, "ended": time.time(),
                                  "version": version_of(step.command)})
     return seconds
 
 
-def run_all(todo, out):
+def names_from(number, todo, order):
+    """The names of the steps that use the result of the step todo[number], and its own name. `order`:
+    the names of all steps, including those that do not run."""
+    name = todo[number].name
+    others = order[order.index(name) + 1:] if name in order else []
+    return {*(step.name for step in todo[number:]), *others}
+
+
+def run_all(todo, out, order=()):
     """Runs the steps that are not done, with records in `out`/steps and logs in `out`/logs. Returns
-    the time of every step in seconds, by the step's name."""
+    the time of every step in seconds, by the step's name. `order`: as for names_from()."""
     records, chain, seconds = Records(out / "steps"), [], {}
     for number, step in enumerate(todo):
         chain = [*chain, step.command, step.fingerprint()]
@@ -139,8 +162,7 @@ def run_all(todo, out):
             seconds[step.name] = records.read(step, "done")["seconds"]
             print(f"{headline}: done before", flush=True)
             continue
-        for later in todo[number:]:
-            records.forget(later)
+        records.forget(names_from(number, todo, order))
         print(f"{headline}\n    {shlex.join(step.command)}", flush=True)
         seconds[step.name] = perform(step, chain, records, out / "logs")
     return seconds

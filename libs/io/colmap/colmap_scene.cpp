@@ -221,6 +221,32 @@ void check_ports(const Housing& resolved, const Scene& scene,
 
 }  // namespace
 
+std::vector<fs::path> remove_missing_images(ColmapModel& model, const fs::path& image_folder) {
+  std::vector<fs::path> missing;
+  std::set<std::uint32_t> ids;
+  for (const ColmapImage& image : model.images) {
+    std::error_code error;
+    const fs::path file = (image_folder / image.name).lexically_normal();
+    if (fs::exists(file, error)) continue;
+    missing.push_back(file);
+    ids.insert(image.id);
+  }
+  if (missing.empty()) return missing;
+  std::erase_if(model.images, [&](const ColmapImage& image) { return ids.contains(image.id); });
+  for (ColmapPoint3D& point : model.points)
+    std::erase_if(point.track,
+                  [&](const ColmapTrackElement& element) { return ids.contains(element.image); });
+  std::set<std::uint64_t> points;
+  for (const ColmapPoint3D& point : model.points)
+    if (point.track.size() >= 2) points.insert(point.id);
+  std::erase_if(model.points,
+                [&](const ColmapPoint3D& point) { return !points.contains(point.id); });
+  for (ColmapImage& image : model.images)
+    for (ColmapPoint2D& point : image.points)
+      if (!points.contains(point.point3d)) point.point3d = kNoPoint3D;
+  return missing;
+}
+
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
                           const ProgressSink& undistorting, const ProgressSink& preparing_cameras,
                           const ProgressSink& checking_images) {

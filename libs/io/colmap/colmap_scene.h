@@ -22,6 +22,12 @@ struct ColmapImport {
   bool undistort = true;  // false: undistort only where rule 2 below does not apply
 };
 
+// Removes the images of `model` whose files are not in `image_folder`, their observations, and the
+// points that are left with fewer than two observations. Returns the files of the removed images,
+// in the model's order.
+std::vector<std::filesystem::path> remove_missing_images(ColmapModel& model,
+                                                         const std::filesystem::path& image_folder);
+
 // Returns the scene of `model`, with the images in the model's order. For each camera, the first
 // rule that applies is used:
 // 1. Images of pinhole cameras are used as they are.

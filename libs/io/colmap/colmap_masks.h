@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Writes masks in the form of COLMAP.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+#include "base/progress.h"
+#include "base/setting_names.h"
+
+namespace axial::io {
+
+// What write_colmap_masks() reads and writes. All paths are absolute.
+struct ColmapMasks {
+  std::filesystem::path images;  // folder of the photographs
+  std::filesystem::path masks;   // folder of the masks (find_masks in images/masks.h), or the file
+                                 // of one mask for all photographs
+  int label = 0;                 // of the pixels to leave out
+  std::filesystem::path output;  // folder for COLMAP's masks
+  // Errors name the fields masks, label and output by name_of("mask_folder"),
+  // name_of("ignore_mask_label") and name_of("output").
+  SettingNames name_of = own_name;
+};
+
+// Writes a mask for every photograph of `images` and of its subfolders; links to folders are not
+// entered, as by COLMAP, and files that are no images are skipped. The mask of `images`/dive/a.jpg
+// is `output`/dive/a.jpg.png: grey, 8 bits, in the size of the photograph, 0 (no features) at
+// pixels whose nearest label is `label`, else 255. This is COLMAP's form (ImageReader.mask_path),
+// and find_masks() with the folder `output` and the label 0 gives the same pixels. Returns the
+// number of masks. Warns if no mask has the label, and tells the share of the pixels that are left
+// out.
+//
+// Error if `images` has no photograph, a photograph has no mask, a mask cannot be read or has
+// another aspect ratio than its photograph, or a mask that is read would be replaced.
+std::size_t write_colmap_masks(const ColmapMasks& masks, const ProgressSink& progress = {});
+
+}  // namespace axial::io

@@ -1,0 +1,373 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""apps/pipeline/reconstruct with stand-ins for the programs: files of the user in its output folder, its
+photographs and masks, damaged files, and results that are out of date."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import unittest.mock
+
+from pipeline_folder import PIPELINE, InFolder
+from programs import grey_png, main
+from stand_ins import StandIns
+
+from axial_pipeline import photographs, reconstruct_options
+from axial_pipeline.failure import Failure
+
+
+class FilesCase(StandIns):
+    def put(self, name, content="mine"):
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    def commands(self):
+        file = self.folder / "commands"
+        return file.read_text().splitlines() if file.exists() else []
+
+    def command_of(self, program):
+        return [line for line in self.commands() if line.startswith(program + " ")][-1]
+
+    def succeeds(self, *options):
+        """Returns what the run said."""
+        ended = self.ended(*options)
+        self.assertEqual((ended.returncode, ended.stderr), (0, ""), options)
+        return ended.stdout
+
+    def everything(self):
+        """All names below the folder, with the contents of files."""
+        return {path: path.read_bytes() if path.is_file() else None for path in self.folder.rglob("*")}
+
+    def refused(self, *options):
+        """Checks that the run ends in its first second, with one line, and changes nothing. Returns the
+        line."""
+        before = self.everything()
+        ended = self.ended(*options)
+        self.assertEqual((ended.returncode, ended.stderr.count("\n")), (1, 1), ended.stderr)
+        self.assertTrue(ended.stderr.startswith("reconstruct: "), ended.stderr)
+        self.assertNotIn("Traceback", ended.stderr)
+        self.assertEqual(self.everything(), before)
+        return ended.stderr.removeprefix("reconstruct: ").rstrip("\n")
+
+
+class OtherFiles(FilesCase):
+    """Files in the output folder that no run made."""
+
+    def test_nothing_of_the_user_is_replaced(self):
+        names = ["colmap/model.txt", "database.db", "features.db", "lock", "logs/poses.log", "refined/notes",
+                 "report.md", "scene.mvs", "steps/mesh.begun.json", "depth0000.dmap", "evaluation.json",
+                 "scene_dense.ply", "scene_dense_mesh.ply", "scene_map.dem.tif", "scene_textured.glb",
+                 "scene_textured_0.png", "undistorted/a.png"]
+        for name in names:
+            self.put(f"out/{name}")
+        said = self.refused("--truth", "lens")
+        for name in ("colmap", "database.db", "depth0000.dmap", "evaluation.json", "and 7 more"):
+            self.assertIn(name, said)
+        for name in names[:9]:
+            shutil.rmtree(self.folder / "out")
+            self.put(f"out/{name}")
+            named = name.split("/")[0] if name.startswith(("colmap", "refined")) else name
+            self.assertEqual(self.refused(),
+                             f"--output {self.folder}/out: {named}: no record of an earlier run names this "
+                             "file, which this run would replace; move it, or give another --output")
+        self.assertEqual(self.commands(), [])
+
+    def test_files_with_other_names_do_not_matter(self):
+        kept = {name: self.put(f"out/{name}") for name in
+                ("scene.blend", "logs/mine.log", "steps/mine.json", "my_database.db", "depth.txt",
+                 "scene_textured.glb")}
+        (self.folder / "out" / "colmap").mkdir()
+        self.succeeds("--until", "mesh")
+        for path in kept.values():
+            self.assertEqual(path.read_text(), "mine")
+        self.assertIn("scene_textured.glb: no record", self.refused())
+
+    def test_a_folder_of_an_older_version_goes_on(self):
+        self.succeeds()
+        records = self.folder / "out" / "steps"
+        for path in records.glob("*.json"):
+            record = json.loads(path.read_text())
+            path.write_text(json.dumps({key: value for key, value in record.items()
+                                        if key not in ("makes", "ended")}))
+        self.assertEqual(self.succeeds().count("done before"), 10)
+        (records / "poses.done.json").unlink()  # killed there
+        self.assertEqual(self.succeeds("--map=--hillshade").count("done before"), 2)
+        (records / "features.done.json").write_text("")
+        (records / "features.begun.json").write_text("")
+        self.assertEqual(self.succeeds().count("done before"), 0)
+
+    def test_a_record_names_what_its_version_makes(self):
+        """A file that a newer version would write, too, may be the user's."""
+        self.succeeds("--until", "cloud")
+        record = self.folder / "out" / "steps" / "features.begun.json"
+        made = json.loads(record.read_text())
+        self.assertIn("still_features.png", made["makes"])
+        record.write_text(json.dumps({**made, "makes": ["features.db"]}))
+        self.put("out/still_features.png")
+        self.assertIn("still_features.png: no record", self.refused("--until", "cloud"))
+
+    def test_an_output_that_is_no_folder_is_refused(self):
+        os.symlink("out", self.folder / "out")
+        self.assertEqual(self.refused(), "--output out: is a link that leads to itself")
+        (self.folder / "out").unlink()
+        self.put("out")
+        self.assertEqual(self.refused(), f"--output {self.folder}/out: is not a folder")
+
+    def test_a_link_is_removed_and_what_it_leads_to_stays(self):
+        self.succeeds()
+        shutil.rmtree(self.folder / "out" / "colmap")
+        mine = self.put("mine/photograph")
+        os.symlink(self.folder / "mine", self.folder / "out" / "colmap")
+        self.put("lens", "other")
+        self.succeeds()
+        self.assertTrue(mine.exists())
+        self.assertTrue((self.folder / "out" / "colmap" / "best").is_dir())
+
+
+class ColmapModelFiles(InFolder):
+    """Files of the user in the output folder of colmap-model."""
+
+    def run_it(self):
+        command = [sys.executable, "-B", str(PIPELINE / "colmap-model"), "--images", "images",
+                   "--camera-model", "PINHOLE", "--camera-parameters", "1,2,3,4", "-o", "out"]
+        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60,
+                              env={**os.environ, "PATH": f"{self.folder}/bin:{os.environ['PATH']}"})
+
+    def test_nothing_of_the_user_is_replaced(self):
+        self.put_script("bin/colmap", '[ "$1" = mapper ] && exit 9; touch out/database.db; exit 0')
+        for number in range(2):
+            self.write(f"images/{number}.png", grey_png([bytes(4)] * 3))
+        for name in ("database.db", "models/0/images.bin", "model/notes", "mapper.log"):
+            shutil.rmtree(self.folder / "out", ignore_errors=True)
+            mine = self.write(f"out/{name}", "mine")
+            ended = self.run_it()
+            self.assertEqual(ended.returncode, 1)
+            self.assertEqual(ended.stderr.splitlines(), [
+                f"colmap-model: --output out: {name.split('/')[0]}: no record of an earlier run names this "
+                "file, which this run would replace; move it, or give another --output"])
+            self.assertEqual(mine.read_text(), "mine")
+        shutil.rmtree(self.folder / "out")
+        for _ in range(2):  # the second run finds what the first one left when COLMAP failed
+            self.assertIn("colmap: exit code 9", self.run_it().stderr)
+
+
+class Photographs(FilesCase):
+    """The folder of the photographs."""
+
+    def test_too_few_are_refused(self):
+        for number in (2, 1):
+            (self.folder / "images" / f"{number}.png").unlink()
+        images = self.folder / "images"
+        self.assertEqual(self.refused(), f"--images {images}: has one photograph, 0.png; at least 2 are "
+                                         "needed")
+        self.put("images/0.png", "text")
+        self.assertEqual(self.refused(), f"--images {images}: has no photographs (0.png: not an image); at "
+                                         "least 2 are needed")
+
+    def test_what_colmap_would_do_wrong_is_refused(self):
+        images = self.folder / "images"
+        other = self.put("images/.hidden/small.png", grey_png([bytes(2)] * 2))
+        self.assertEqual(self.refused(), f"--images {images}: the photographs have different sizes: 3 of 4 x "
+                         "3 pixels (0.png first), 1 of 2 x 2 pixels (.hidden/small.png); all must be of one "
+                         "camera and setting: move the others to another folder")
+        other.unlink()
+        for name in ("0.mask.png", "0.png.png", "0_mask.png"):
+            shutil.copy(images / "0.png", images / name)
+            self.assertIn(f"{name} is the mask of 0.png, and COLMAP would take it for a photograph",
+                          self.refused())
+            (images / name).unlink()
+        os.symlink("loop.png", images / "loop.png")
+        self.assertEqual(self.refused(), f"--images {images}/loop.png: is a link that leads to itself; remove "
+                                         "it, because COLMAP stops there")
+
+    def test_what_colmap_leaves_out_is_told(self):
+        images = self.folder / "images"
+        self.put("images/notes.txt")
+        os.symlink("nowhere", images / "broken.png")
+        os.symlink(self.folder, images / "elsewhere")
+        self.put("images/dive 2/a.png", (images / "0.png").read_bytes()[:-12])
+        said = self.succeeds().splitlines()
+        self.assertEqual(said[:4], [
+            f"{images}: broken.png, notes.txt: not an image, not used",
+            f"{images}: elsewhere: a link to a folder, which COLMAP does not enter: not used",
+            f"{images}: 1 of 4 photographs are in subfolders, and are used, too: dive 2/a.png",
+            f"{images}: warning: dive 2/a.png: the end of the image is missing; copy it again"])
+
+    def test_names_that_are_not_utf8_are_refused(self):
+        image = os.fsencode(self.folder / "images") + b"/n\xff.png"
+        shutil.copy(self.folder / "images" / "0.png", image)
+        self.assertIn("images/n\\xff.png: the name is not UTF-8; rename it", self.refused())
+        os.remove(image)
+        self.assertEqual(self.refused("--truth", os.fsdecode(b"n\xff.ply")),
+                         "--truth n\\xff.ply: the name is not UTF-8; rename it")
+
+    def test_sizes_of_images(self):
+        """Of a PNG, of JPEG files with and without a segment before the size, and of TIFF files in both
+        orders of bytes."""
+        def tiff(order, mark):
+            short = (4).to_bytes(2, order) + b"\0\0"
+            entries = [(256, 3, short), (257, 4, (3).to_bytes(4, order))]
+            table = b"".join(tag.to_bytes(2, order) + kind.to_bytes(2, order) + (1).to_bytes(4, order) + value
+                             for tag, kind, value in entries)
+            return mark + (8).to_bytes(4, order) + (2).to_bytes(2, order) + table
+
+        frame = b"\xff\xc2\0\x0b\x08\0\x03\0\x04\x01\x01\x11\0\xff\xd9"
+        for data in (grey_png([bytes(4)] * 3), b"\xff\xd8" + frame, b"\xff\xd8\xff\xe1\0\x05abc" + frame,
+                     tiff("little", b"II*\0"), tiff("big", b"MM\0*")):
+            image = photographs.image_of(self.put("image", data))
+            self.assertEqual((image.size, image.is_whole), ((4, 3), True))
+            for end in range(len(data)):
+                photographs.image_of(self.put("image", data[:end]))  # no exception
+        self.assertFalse(photographs.image_of(self.put("image", b"\xff\xd8" + frame[:-2])).is_whole)
+        self.assertIsNone(photographs.image_of(self.put("image", "")))
+
+
+class DamagedFiles(FilesCase):
+    """Files of an earlier run that are damaged."""
+
+    def test_a_damaged_report_is_made_again(self):
+        self.succeeds()
+        for damaged in ("", "{", "[1]", "[" * 100000, b"\xff"):
+            self.put("out/refined/report.json", damaged)
+            self.assertEqual(self.succeeds().count("done before"), 3)
+
+    def test_a_report_of_another_version_is_named(self):
+        self.succeeds()
+        report = self.put("out/refined/report.json", '{"rms_before_px": "1"}')
+        ended = self.ended()
+        self.assertEqual((ended.returncode, ended.stderr), (1, f"reconstruct: {report}: is damaged, or of "
+                         "another version; remove it, and the same command makes it again\n"))
+        report.unlink()
+        self.succeeds()
+
+    def test_damaged_records_are_no_records(self):
+        self.succeeds()
+        record = self.folder / "out" / "steps" / "map.done.json"
+        whole = json.loads(record.read_text())
+        for damaged in ("[" * 100000, json.dumps({**whole, "seconds": "1"}), b"\xff\xfe",
+                        json.dumps({**whole, "seconds": float("nan")})):
+            self.put("out/steps/map.done.json", damaged)
+            self.assertEqual(self.succeeds().count("done before"), 9)
+        self.put("out/steps/map.done.json", json.dumps({"chain": whole["chain"]}))
+        self.assertEqual(self.succeeds().count("done before"), 10)
+
+
+class Masks(FilesCase):
+    """--masks reaches COLMAP and all programs that know masks."""
+
+    def test_masks_reach_every_program(self):
+        self.put("masks/0.png")
+        self.succeeds("--masks", "masks", "--ignore-mask-label", "7")
+        out = self.folder / "out"
+        self.assertEqual(self.commands()[0], f"InterfaceCOLMAP -i {self.folder}/images --mask-path "
+                         f"{self.folder}/masks --ignore-mask-label 7 -o {out}/masks")
+        self.assertIn(f"--ImageReader.mask_path {out}/masks", self.commands()[1])
+        for program in ("DensifyPointCloud", "RefineMesh", "TextureMesh", "MapSurface"):
+            self.assertEqual(self.command_of(program).count(f"--mask-path {out}/masks"), 1, program)
+        for program in ("ReconstructMesh", "RefinePoses"):
+            self.assertNotIn("--mask-path", self.command_of(program))
+
+    def test_options_of_a_program_come_first(self):
+        self.put("masks/0.png")
+        self.succeeds("--masks", "masks", "--texture=--mask-path other", "--densify=--mask-p x")
+        self.assertIn("--mask-path other", self.command_of("MapSurface"))
+        for program in ("TextureMesh", "MapSurface", "DensifyPointCloud"):
+            self.assertNotIn(f"{self.folder}/out/masks", self.command_of(program))
+
+    def test_changed_masks_begin_anew(self):
+        mask = self.put("masks/0.png")
+        options = ["--masks", "masks"]
+        self.assertEqual([self.succeeds(*options).count("done before") for _ in range(2)], [0, 11])
+        mask.write_text("changed")
+        self.assertEqual(self.succeeds(*options).count("done before"), 0)
+        self.assertEqual(self.succeeds().count("done before"), 0)
+
+    def test_wrong_options_are_refused(self):
+        self.put("masks/0.png")
+        for options, said in (
+                (["--masks", "none"], "--masks none: not found"),
+                (["--ignore-mask-label", "1"], "--ignore-mask-label 1: is only for --masks"),
+                (["--masks", "masks", "--ignore-mask-label", "a"],
+                 "--ignore-mask-label a: must be a number from 0 to 65535")):
+            self.assertEqual(self.refused(*options), said)
+        self.put("out/masks/0.png")
+        self.assertIn("lies in the folder that this run writes", self.refused("--masks", "out/masks"))
+
+
+class OutOfDate(FilesCase):
+    """Inputs that changed, and results of earlier runs."""
+
+    def test_changed_files_below_relative_paths_are_noticed(self):
+        """DensifyPointCloud works in the output folder, the other programs in that of the command."""
+        for program, option, file, done in (
+                ("DensifyPointCloud", "--densify=--mask-path own", "out/own/deep/0.png", 5),
+                ("DensifyPointCloud", "--densify=--iters 2 -c a.cfg", "out/a.cfg", 5),
+                ("TextureMesh", "--texture=--mask-path own", "own/deep/0.png", 8),
+                ("RefineMesh", "--refine-mesh=--scales 1", "RefineMesh.cfg", 7)):
+            shutil.rmtree(self.folder / "out", ignore_errors=True)
+            self.put(file)
+            self.succeeds(option)
+            self.assertEqual(self.succeeds(option).count("done before"), 10, program)
+            self.put(file, "changed")
+            self.assertEqual(self.succeeds(option).count("done before"), done, program)
+
+    def test_masks_that_a_file_of_options_names_are_noticed(self):
+        self.put("out/DensifyPointCloud.cfg", "# masks\nmask-path = own\n")
+        self.put("out/own/0.png")
+        os.symlink(self.folder / "linked", self.folder / "out" / "own" / "more")
+        self.put("linked/1.png")
+        self.succeeds()
+        for file in ("out/own/0.png", "linked/1.png", "out/DensifyPointCloud.cfg"):
+            self.assertEqual(self.succeeds().count("done before"), 10)
+            self.put(file, f"changed mask-path = own {file}")
+            self.assertEqual(self.succeeds().count("done before"), 5, file)
+            self.put("out/DensifyPointCloud.cfg", "# masks\nmask-path = own\n")
+            self.succeeds()
+
+    def test_an_output_of_a_program_is_not_its_input(self):
+        with (self.folder / "DensifyPointCloud").open("a") as script:
+            script.write("mkdir -p out/export; date +%N > out/export/a; date +%N > out/log\n")
+        options = ["--densify=--pinhole-export export --log-file=log"]
+        self.succeeds(*options)
+        self.assertEqual(self.succeeds(*options).count("done before"), 10)
+
+    def test_an_earlier_mesh_that_is_out_of_date_is_not_taken(self):
+        with unittest.mock.patch("builtins.print"):
+            find = lambda: reconstruct_options.mesh_of_earlier_survey(self.folder / "out").name
+            self.succeeds("--without", "map,page")
+            self.assertEqual(find(), "scene_dense_refined.ply")
+            self.succeeds("--mesh=--smooth 1", "--without", "refine-mesh,map,page")
+            self.assertEqual(find(), "scene_dense_mesh.ply")
+            (self.folder / "out" / "steps" / "mesh.done.json").unlink()
+            with self.assertRaisesRegex(Failure, "its mesh is older than its cloud, or was not completed"):
+                find()
+            self.succeeds("--without", "map,page")
+            self.assertEqual(find(), "scene_dense_refined.ply")
+
+    def test_an_earlier_mesh_of_an_older_version_is_judged_by_times(self):
+        self.succeeds("--without", "map,page")
+        records = self.folder / "out" / "steps"
+        for path in records.glob("*.done.json"):
+            record = json.loads(path.read_text())
+            del record["ended"]
+            path.write_text(json.dumps(record))
+        self.assertEqual(reconstruct_options.mesh_of_earlier_survey(self.folder / "out").name,
+                         "scene_dense_refined.ply")
+        os.utime(records / "refine-mesh.done.json", (1e9, 1e9))
+        self.assertEqual(reconstruct_options.mesh_of_earlier_survey(self.folder / "out").name,
+                         "scene_dense_mesh.ply")
+
+    def test_maps_of_other_options_are_removed(self):
+        self.succeeds()
+        for name in ("scene_map.hillshade.tif", "scene_map.contours.geojson"):
+            self.put(f"out/{name}")
+        self.succeeds("--map=--hillshade")
+        self.assertEqual([path.name for path in (self.folder / "out").glob("scene_map.*")
+                          if path.read_text() == "mine"], [])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""apps/pipeline/reconstruct with stand-ins for the programs, in a folder of its own."""
+
+import os
+import pathlib
+import select
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from programs import grey_png
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
+PHOTOGRAPH = grey_png([bytes(4)] * 3)
+# A stand-in for every program of the pipeline; its file name tells which one. It runs in the folder
+# above `out`. It appends its command line to the file `commands` and writes the files that the next
+# program reads. If there is a pipe `pipe-NAME`, the program opens it and sleeps, so that the pipe
+# closes when the program ends. With `child-pipe-NAME`, a child of the program does so.
+STAND_IN = """#!/bin/sh
+[ "$2" = --help ] && { echo "--SpatialMatching.is_gps "; exit; }
+name=${0##*/}
+case $1 in --version|help) echo "$name 7.8"; exit ;; esac
+echo "$name $*" >> commands
+if [ -p "pipe-$name" ]; then exec > "pipe-$name"; echo begun; exec sleep 60; fi
+if [ -p "child-pipe-$name" ]; then
+  (exec > "child-pipe-$name"; echo begun; exec sleep 60); echo ended >> commands
+fi
+case "$name $*" in
+  "colmap feature_extractor "*) touch out/features.db ;;
+  "colmap mapper "*) mkdir out/colmap/0; printf '\\1\\0\\0\\0\\0\\0\\0\\0' > out/colmap/0/images.bin ;;
+  RefinePoses*) mkdir out/refined; echo '{"rms_before_px": 1, "rms_after_px": 1, "cameras": [],
+    "observations_after": 1, "points_after": 1, "images": [], "scale_sigma": 0}' \
+    > out/refined/report.json ;;
+  InterfaceCOLMAP*--mask-path*) mkdir -p out/masks ;;
+  InterfaceCOLMAP*) touch out/scene.mvs ;;
+  DensifyPointCloud*) touch out/scene_dense.ply ;;
+  ReconstructMesh*) touch out/scene_dense_mesh.ply ;;
+  RefineMesh*) touch out/scene_dense_refined.ply ;;
+  TextureMesh*) touch out/scene_textured.glb out/scene_textured.ply ;;
+  CompareSurveys*) touch out/scene_change.json ;;
+  MapSurface*) touch out/scene_map.dem.tif out/scene_map.ortho.tif out/scene_map.views.tif ;;
+esac
+"""
+
+
+class StandIns(unittest.TestCase):
+    """The whole script, with stand-in programs that end at once or sleep."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="axial_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name).resolve()
+        for name in ("colmap", "RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud",
+                     "ReconstructMesh", "RefineMesh", "TextureMesh", "MapSurface", "CompareSurveys",
+                     "ViewScene"):
+            (self.folder / name).write_text(STAND_IN)
+            (self.folder / name).chmod(0o755)
+        for name in ("lens", "housing"):
+            (self.folder / name).touch()
+        (self.folder / "images").mkdir()
+        for number in range(3):
+            (self.folder / "images" / f"{number}.png").write_bytes(PHOTOGRAPH)
+
+    def start(self, *more):
+        process = subprocess.Popen(
+            [sys.executable, str(SCRIPT), "--images", "images", "--lens", "lens", "--housing",
+             "housing", "-o", "out", "--programs", ".", *more], cwd=self.folder, text=True,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            env={**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}"})
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    def ended(self, *more):
+        process = self.start(*more)
+        said, complaint = process.communicate(timeout=60)
+        return subprocess.CompletedProcess([], process.returncode, said, complaint)
+
+    def held_at(self, program, prefix="pipe"):
+        """Starts a run that stays in the step of this program. Returns the run and the pipe."""
+        os.mkfifo(self.folder / f"{prefix}-{program}")
+        pipe = os.open(self.folder / f"{prefix}-{program}", os.O_RDONLY | os.O_NONBLOCK)
+        self.addCleanup(os.close, pipe)
+        process = self.start()
+        self.assertEqual(self.next_of(pipe), b"begun\n")
+        return process, pipe
+
+    def next_of(self, pipe):
+        """What the program writes next to its pipe; empty if the program has ended."""
+        self.assertTrue(select.select([pipe], [], [], 30)[0], "neither said anything nor ended")
+        return os.read(pipe, 100)
