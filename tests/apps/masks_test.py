@@ -1,8 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Masks: which file is used; a mask that is missing or not used is reported."""
 
+import array
+import contextlib
+import shutil
+import sqlite3
+import subprocess
 
+import pipeline_folder  # noqa: F401 (makes axial_pipeline importable)
 import tiny_scene
+from axial_pipeline import colmap
 from programs import ProgramTest, depth_rows, grey_png, main, read, write
 
 LEFT, RIGHT = bytes([0] * 48 + [255] * 48), bytes([255] * 48 + [0] * 48)
@@ -106,6 +113,45 @@ class Masks(ProgramTest):
         self.refuses(f"no mask for image {self.images[1]}: looked for 0001.mask.png, 0001.png.png, "
                      f"0001_mask.png and 0001.png in {self.path('masks')}", *self.arguments(
                          "--mask-path", "masks"))
+
+
+class MasksForColmap(ProgramTest):
+    """InterfaceCOLMAP writes masks in COLMAP's form, which the other programs understand, too."""
+
+    def test_they_mean_the_same_to_colmap_and_to_the_programs(self):
+        for name, centre in zip(tiny_scene.names(), tiny_scene.CENTRES):
+            write(self.path("images", name), tiny_scene.picture(centre))
+            write(self.path("masks", name), grey_png([bytes([7] * 48 + [3] * 48)] * 72))
+        said = self.succeeds("InterfaceCOLMAP", "-i", self.path("images"), "--mask-path", self.path("masks"),
+                             "--ignore-mask-label", 7, "-o", self.path("out")).stdout
+        self.assertIn("3 masks, which leave out 50.0 % of the pixels", said)
+        write(self.path("scene.mvs"), tiny_scene.mvs([self.path("images", name)
+                                                      for name in tiny_scene.names()]))
+        self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.folder, "--resolution-level", "0",
+                      "--iters", "1", "--geometric-iters", "0", "--postprocess-dmaps", "0", "--mask-path",
+                      "out")
+        rows = depth_rows(read(self.path("depth0000.dmap")))
+        self.assertFalse(any(depth > 0 for row in rows for depth in row[:48]))
+        self.assertTrue(any(depth > 0 for row in rows for depth in row[48:]))
+        if shutil.which("colmap"):
+            self.assertEqual({x > 48 for x in self.features(self.path("out"))}, {True})
+
+    def features(self, masks):
+        """The x of the features that COLMAP finds."""
+        command = colmap.features(self.path("f.db"), self.path("images"), "PINHOLE", threads=1, masks=masks)
+        subprocess.run(list(map(str, command)), check=True, capture_output=True)
+        with contextlib.closing(sqlite3.connect(self.path("f.db"))) as connection:
+            for columns, data in connection.execute("SELECT cols, data FROM keypoints"):
+                yield from array.array("f", data)[::columns]
+
+    def test_what_writes_no_masks_is_refused(self):
+        write(self.path("images", "a.png"), tiny_scene.picture(tiny_scene.CENTRES[0]))
+        write(self.path("mask.png"), grey_png([bytes(96)] * 72))
+        given = ("InterfaceCOLMAP", "-i", self.path("images"), "--mask-path", self.path("mask.png"))
+        self.refuses("--mask-path", *given)  # without -o
+        self.refuses("--ignore-mask-label -1: must be from 0", *given, "-o", "x", "--ignore-mask-label=-1")
+        self.refuses("--housing: contradicts --mask-path", *given, "-o", "x", "--housing", "h")
+        self.refuses("is only for --mask-path", *given[:3], "--ignore-mask-label", "0")
 
 
 if __name__ == "__main__":

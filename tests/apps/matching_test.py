@@ -157,6 +157,11 @@ class Matching(InFolder):
         with self.assertRaisesRegex(Failure, "positions.txt names 0 photographs as in"):
             self.step(self.with_positions()).before()
 
+    def test_a_damaged_database_is_named(self):
+        self.write("features.db", "no database" * 100)
+        with self.assertRaisesRegex(Failure, "features.db: is not a database of COLMAP, or is damaged"):
+            self.step(self.given("spatial")).before()
+
     def test_a_newer_table_is_left_alone(self):
         with contextlib.closing(sqlite3.connect(self.folder / "features.db")) as connection, connection:
             connection.execute("CREATE TABLE images (image_id INTEGER, name TEXT)")

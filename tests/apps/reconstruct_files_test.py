@@ -360,6 +360,24 @@ class OutOfDate(FilesCase):
         self.assertEqual(reconstruct_options.mesh_of_earlier_survey(self.folder / "out").name,
                          "scene_dense_mesh.ply")
 
+    def test_results_that_this_run_does_not_renew_are_told(self):
+        self.succeeds()
+        line = ("Of an earlier run, not of this one: scene_textured.glb, scene_textured.ply, "
+                "scene_map.dem.tif, scene_map.ortho.tif, scene_map.views.tif")
+        self.assertNotIn("earlier run", self.succeeds("--until", "mesh"))  # nothing changed
+        said = self.succeeds("--until", "mesh", "--mesh=--smooth 1").splitlines()
+        self.assertEqual([sorted(one) for one in said if "earlier run" in one], [sorted(line)])
+
+    def test_tiles_of_an_earlier_run_are_removed(self):
+        tile = self.folder / "out" / "scene_textured.tile3-4.glb"
+        with (self.folder / "TextureMesh").open("a") as script:
+            script.write("touch out/scene_textured.tile1-4.glb; [ -e once ] || touch once "
+                         "out/scene_textured.tile3-4.glb\n")
+        self.succeeds("--tiles", "4")
+        self.assertTrue(tile.exists())
+        self.succeeds("--tiles", "4", "--texture=--outlier-threshold 0.1")
+        self.assertFalse(tile.exists())
+
     def test_maps_of_other_options_are_removed(self):
         self.succeeds()
         for name in ("scene_map.hillshade.tif", "scene_map.contours.geojson"):

@@ -16,6 +16,7 @@ from programs import main
 from reconstruct_test import STEPS
 from stand_ins import SCRIPT, StandIns
 
+
 class WithStandIns(StandIns):
     """The whole script, with stand-in programs that end at once or sleep."""
 
@@ -94,6 +95,15 @@ class WithStandIns(StandIns):
         with (programs / "EvaluateReconstruction").open("a") as script:
             script.write("echo '{\"accuracy\": {\"mean\": 0, \"median\": 0, \"count\": 1}}' > "
                          "out/evaluation.json\n")
+        mine = self.folder / "out" / "page" / "index.html"
+        mine.parent.mkdir(parents=True)
+        mine.write_text("mine")
+        refused = self.ended(*again)
+        self.assertEqual((refused.returncode, mine.read_text()), (1, "mine"))
+        self.assertIn("page: no record of an earlier run names this file", refused.stderr)
+        self.assertFalse((self.folder / "commands").exists())
+        shutil.rmtree(self.folder / "out")
+
         first = self.ended(*again)
         self.assertEqual(first.returncode, 0, first.stderr)
         shown = json.loads((self.folder / "shown.json").read_text())

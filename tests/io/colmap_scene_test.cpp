@@ -35,6 +35,23 @@ TEST_F(ColmapScene, TakesImagesPosesAndPointsOver) {
   EXPECT_EQ(scene.point_colors[0], (Rgb{10, 20, 30}));
 }
 
+TEST_F(ColmapScene, MissingImagesAreLeftOutWithTheirObservations) {
+  EXPECT_TRUE(remove_missing_images(model_, import_.image_folder).empty());
+  model_.points.push_back({2, {4, 5, 6}, {}, 0.5, {{3, 2}, {4, 1}}});
+  for (ColmapImage& image : model_.images) image.points = {{1, 1, 1}, {2, 2, 2}};
+  fs::remove(folder_ / "images" / "c.png");  // the image with the id 3
+  EXPECT_THAT(remove_missing_images(model_, import_.image_folder),
+              ::testing::ElementsAre(folder_ / "images" / "c.png"));
+  ASSERT_EQ(model_.images.size(), 2u);
+  ASSERT_EQ(model_.points.size(), 1u) << "one observation is left of the other point";
+  EXPECT_EQ(model_.points[0].track.size(), 2u);
+  for (const ColmapImage& image : model_.images) {
+    EXPECT_EQ(image.points[0].point3d, 1u);
+    EXPECT_EQ(image.points[1].point3d, kNoPoint3D);
+  }
+  EXPECT_EQ(import_colmap_scene(model_, import_).images.size(), 2u);
+}
+
 TEST_F(ColmapScene, ImageIdsThatStartAtZeroDoNotWrap) {
   model_.images[1].id = 0;
   model_.points.clear();

@@ -82,7 +82,11 @@ def step(given, features, database):
     def before():
         files.copy_once(features, database)
         if given.matcher == "spatial":
-            prepare_positions(database, file)
+            try:
+                prepare_positions(database, file)
+            except sqlite3.Error as error:
+                raise Failure(f"{features}: is not a database of COLMAP, or is damaged ({error}); remove "
+                              "it, and the same command makes it again") from None
 
     return Step("matches", colmap.matches(database, given.matcher, more=more_options(given)),
                 makes=database, reads=reads, changed=colmap.database_files(database), before=before)

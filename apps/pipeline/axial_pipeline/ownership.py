@@ -134,6 +134,15 @@ def check(out, steps, is_cluster=False):
     refuse(out, sorted(foreign | set(other_files(out))))
 
 
+def left_over(out, steps):
+    """The files in the folder `out` that earlier runs made in steps that are not among `steps`, and that
+    no longer belong to the results of the other steps."""
+    records = out / "steps"
+    stale = [name for name in ORDER if name not in steps and not (records / f"{name}.done.json").exists()
+             and (records / f"{name}.begun.json").exists()]
+    return [one for name in stale for pattern in WRITES[name] for one in existing(out, pattern)]
+
+
 def refuse(out, names):
     """Fails if there are `names`, which are files of somebody else in the folder `out`."""
     if names:

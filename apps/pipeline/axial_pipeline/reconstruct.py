@@ -111,6 +111,9 @@ def reconstruct(given):
         files.write(out / "report.md", report(out, seconds))
     for line in still_features.lines_about(out):
         print(f"warning: {line}")
+    left_over = ownership.left_over(out, [step.name for step in todo])
+    if left_over:
+        print(f"Of an earlier run, not of this one: {ownership.in_words(left_over)}")
     print(results_of(given, out))
 
 

@@ -100,6 +100,16 @@ def whole_mesh(given, out):
     return meshes(out)[2].with_suffix(".ply")
 
 
+class MadeBefore:
+    """The files that an earlier run of the step `name` made, looked for when they are removed."""
+
+    def __init__(self, name, out):
+        self.name, self.out = name, out
+
+    def __iter__(self):
+        return (path for pattern in WRITES[self.name] for path in self.out.glob(pattern))
+
+
 def mesh_steps(given, out):
     """The steps from the cloud to the mesh and its textures."""
     programs, scene, refractive = Programs(given.programs), out / "scene_dense.mvs", ("--refractive", 1)
@@ -119,20 +129,10 @@ def mesh_steps(given, out):
         yield Step("texture", command,
                    makes=Tiles(out, f"scene_textured.tile*-{given.tiles}.glb") if given.tiles > 1
                    else Files(textured.with_suffix(".glb"), textured.with_suffix(".ply")),
-                   reads=reads_of("texture", command, given))
+                   reads=reads_of("texture", command, given), anew=MadeBefore("texture", out))
 
 
 RUN_FILE = "run.json"
-
-
-class made_before:
-    """The files that an earlier run of the step `name` made, looked for when they are removed."""
-
-    def __init__(self, name, out):
-        self.name, self.out = name, out
-
-    def __iter__(self):
-        return (path for pattern in WRITES[self.name] for path in self.out.glob(pattern))
 
 
 def words_about_results(given, out):
@@ -182,14 +182,14 @@ def survey_steps(given, out):
         yield Step("map", command,
                    makes=Files(*(out / f"scene_map.{kind}.tif" for kind in ("dem", "ortho", "views"))),
                    reads=[*reads_of("map", command, given), *reads_of("texture", command, given)],
-                   anew=made_before("map", out))  # not every command writes all of them again
+                   anew=MadeBefore("map", out))  # not every command writes all of them again
     if "compare" in wanted:
         command = programs.compare_surveys(given.earlier, best_mesh(given, out), out / "scene_change",
                                            *words_about_surveys(given, scene, options["compare"]),
                                            *options["compare"])
         yield Step("compare", command, makes=out / "scene_change.json",
                    reads=[given.earlier, earlier_scene(given, scene), *reads_of("compare", command, given)],
-                   anew=made_before("compare", out))
+                   anew=MadeBefore("compare", out))
     if "page" in wanted:
         command = programs.view_scene(scene, out / "scene_dense.ply", whole, out / "page", *refractive,
                                       *words_about_results(given, out), *options["page"])

@@ -32,7 +32,7 @@ COLMAP_WIDTH = 3200  # COLMAP looks for features in photographs of at most this 
 LEAST_COSINE = 0.9  # of the angle between two descriptors
 LEAST_SHARE = 0.5  # of the other photographs
 LEAST_FEATURES = 8  # fewer change no pose
-NEAR = 0.05  # features nearer than this part of the width are one region
+NEAR = 0.05  # part of the width: the size of cells, and features in cells that touch are one region
 MARGIN, OF_SCALE = 0.01, 6  # around a feature: part of the width, and size of its descriptor
 
 
@@ -100,30 +100,46 @@ def counts_of_rest(reference, others, largest_move):
     return counts
 
 
+def each_once(features, distance):
+    """The `features` without those that are nearer than `distance` to an earlier one in x and in y."""
+    kept = collections.defaultdict(list)
+    for x, y, *rest in features:
+        column, row = math.floor(x / distance), math.floor(y / distance)
+        near = (one for a in (-1, 0, 1) for b in (-1, 0, 1) for one in kept.get((column + a, row + b), ()))
+        if not any(abs(one[0] - x) < distance and abs(one[1] - y) < distance for one in near):
+            kept[column, row].append((x, y, *rest))
+    return [one for cell in kept.values() for one in cell]
+
+
 def at_rest(photographs, width):
     """(x, y, scale, share of photographs) of the features at rest. `photographs`: Features."""
     largest_move = LARGEST_MOVE * max(1, width / COLMAP_WIDTH)
     sample = [(one, cells_of(one, 2 * largest_move)) for one in photographs]
-    found = {}
+    found = []
     for reference, _ in sample_of(sample, REFERENCES):
         others = [one for one in sample if one[0] is not reference]
         counts = counts_of_rest(reference, others, largest_move)
         for number, count in enumerate(counts):
             if count >= max(2, LEAST_SHARE * len(others)):
-                x, y = reference.xs[number], reference.ys[number]
-                found.setdefault((round(x / 2), round(y / 2)), (
-                    x, y, reference.scales[number], (count + 1) / len(sample)))
-    return list(found.values())
+                found.append((reference.xs[number], reference.ys[number], reference.scales[number],
+                              (count + 1) / len(sample)))
+    return each_once(found, 2 * largest_move)
 
 
 def regions_of(features, width):
-    """Lists of features that are near each other, the largest first."""
-    regions, size = [], NEAR * width
-    for x, y, *rest in features:
-        near = [region for region in regions if any(math.hypot(x - a, y - b) <= size
-                                                    for a, b, *_ in region)]
-        joined = [(x, y, *rest), *(one for region in near for one in region)]
-        regions = [region for region in regions if region not in near] + [joined]
+    """Lists of features that are near each other, the largest first: those in cells that touch."""
+    cells, size = collections.defaultdict(list), NEAR * width
+    for feature in features:
+        cells[math.floor(feature[0] / size), math.floor(feature[1] / size)].append(feature)
+    regions = []
+    while cells:
+        region, todo = [], [next(iter(cells))]
+        while todo:
+            column, row = todo.pop()
+            region += cells.pop((column, row), [])
+            todo += [(column + a, row + b) for a in (-1, 0, 1) for b in (-1, 0, 1)
+                     if (column + a, row + b) in cells]
+        regions.append(region)
     return sorted(regions, key=len, reverse=True)
 
 
