@@ -23,6 +23,7 @@ import whole_programs  # noqa: E402, F401
 import memory  # noqa: E402, F401
 import tiles  # noqa: E402, F401
 import survey_page  # noqa: E402, F401
+import still  # noqa: E402, F401
 
 
 def source_state():
