@@ -3,7 +3,7 @@
 
 import math
 
-from axial_pipeline import colmap, still_features
+from axial_pipeline import colmap, masks, still_features
 from axial_pipeline import truth as pipeline_truth
 from axial_pipeline.colmap_model import colmap_model
 from points import BASE, point, truth_of
@@ -63,7 +63,7 @@ def strobe_arm(work):
     if not mask.exists():
         return "the arm was not noticed", False
     colmap_model(images, masked, lens,
-                 mask_command=PROGRAMS.colmap_masks(images, mask, masked / "masks", 0))
+                 mask_command=PROGRAMS.colmap_masks(images, mask, masked / masks.FOLDER, 0))
     without, lost = errors(plain, truth)
     with_mask, lost_masked = errors(masked, truth)
     return (f"without masks median {without[len(without) // 2]:.3g} mm, largest {without[-1]:.3g} mm, {lost} "

@@ -132,6 +132,16 @@ class ColmapModelCommand(InFolder):
         self.assertIn("kept from an earlier run", self.run_it().stdout)
         self.assertEqual(len((self.folder / "commands").read_text().splitlines()), 3)
 
+    def test_masks_reach_colmap(self):
+        self.put_script("programs/InterfaceCOLMAP", 'echo "masks $*" >> commands')
+        mask = self.write("mask.png", "")
+        ended = self.run_it("--masks", "mask.png", "--ignore-mask-label", "3", "--programs", "programs")
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        commands = (self.folder / "commands").read_text().splitlines()
+        self.assertEqual(commands[0], f"masks -i images --mask-path {mask.resolve()} --ignore-mask-label 3 -o "
+                                      "out/colmap_masks")
+        self.assertIn("--ImageReader.mask_path out/colmap_masks", commands[1])
+
     def test_that_colmap_finds_no_poses_is_told_apart_from_a_broken_colmap(self):
         for script, said in ((f"echo '{colmap.NO_MODEL}'; exit 1", "COLMAP found no poses"),
                              (f"echo '{colmap.NO_MODEL}'; exit 3", "colmap: exit code 3, its output "

@@ -263,10 +263,10 @@ class Masks(FilesCase):
         self.succeeds("--masks", "masks", "--ignore-mask-label", "7")
         out = self.folder / "out"
         self.assertEqual(self.commands()[0], f"InterfaceCOLMAP -i {self.folder}/images --mask-path "
-                         f"{self.folder}/masks --ignore-mask-label 7 -o {out}/masks")
-        self.assertIn(f"--ImageReader.mask_path {out}/masks", self.commands()[1])
+                         f"{self.folder}/masks --ignore-mask-label 7 -o {out}/colmap_masks")
+        self.assertIn(f"--ImageReader.mask_path {out}/colmap_masks", self.commands()[1])
         for program in ("DensifyPointCloud", "RefineMesh", "TextureMesh", "MapSurface"):
-            self.assertEqual(self.command_of(program).count(f"--mask-path {out}/masks"), 1, program)
+            self.assertEqual(self.command_of(program).count(f"--mask-path {out}/colmap_masks"), 1, program)
         for program in ("ReconstructMesh", "RefinePoses"):
             self.assertNotIn("--mask-path", self.command_of(program))
 
@@ -275,7 +275,7 @@ class Masks(FilesCase):
         self.succeeds("--masks", "masks", "--texture=--mask-path other", "--densify=--mask-p x")
         self.assertIn("--mask-path other", self.command_of("MapSurface"))
         for program in ("TextureMesh", "MapSurface", "DensifyPointCloud"):
-            self.assertNotIn(f"{self.folder}/out/masks", self.command_of(program))
+            self.assertNotIn(f"{self.folder}/out/colmap_masks", self.command_of(program))
 
     def test_changed_masks_begin_anew(self):
         mask = self.put("masks/0.png")
@@ -293,8 +293,8 @@ class Masks(FilesCase):
                 (["--masks", "masks", "--ignore-mask-label", "a"],
                  "--ignore-mask-label a: must be a number from 0 to 65535")):
             self.assertEqual(self.refused(*options), said)
-        self.put("out/masks/0.png")
-        self.assertIn("lies in the folder that this run writes", self.refused("--masks", "out/masks"))
+        self.put("out/colmap_masks/0.png")
+        self.assertIn("lies in the folder that this run writes", self.refused("--masks", "out/colmap_masks"))
 
 
 class OutOfDate(FilesCase):

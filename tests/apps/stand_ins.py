@@ -32,7 +32,7 @@ case "$name $*" in
   RefinePoses*) mkdir out/refined; echo '{"rms_before_px": 1, "rms_after_px": 1, "cameras": [],
     "observations_after": 1, "points_after": 1, "images": [], "scale_sigma": 0}' \
     > out/refined/report.json ;;
-  InterfaceCOLMAP*--mask-path*) mkdir -p out/masks ;;
+  InterfaceCOLMAP*--mask-path*) mkdir -p out/colmap_masks ;;
   InterfaceCOLMAP*) touch out/scene.mvs ;;
   DensifyPointCloud*) touch out/scene_dense.ply ;;
   ReconstructMesh*) touch out/scene_dense_mesh.ply ;;

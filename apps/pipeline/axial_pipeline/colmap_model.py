@@ -14,7 +14,7 @@ from .programs import Programs, default_folder
 from .running import logged
 
 RECORD = "colmap-model.json"  # what a run makes, below the output folder
-WRITES = ["model", "models", "masks", "database.db", "database.db-*", "masks.log", "features.log",
+WRITES = ["model", "models", masks.FOLDER, "database.db", "database.db-*", "masks.log", "features.log",
           "matches.log", "mapper.log", still_features.FOUND, still_features.MASK]
 
 
@@ -42,14 +42,14 @@ def colmap_model(images, work, calibration, threads=None, mask_command=None):
     `work`/features.log, matches.log and mapper.log. Does nothing if `work`/model exists, because
     COLMAP gives a different model in each run. Fails if `work` has files of others with the names of
     its results. `threads`: of COLMAP, -1 for one on each core. `mask_command`: writes COLMAP's masks
-    into `work`/masks (masks.py)."""
+    into `work`/colmap_masks (masks.py)."""
     model, models, database = work / "model", work / "models", work / "database.db"
     if colmap.is_model(model):
         print(f"  (kept from an earlier run: {model})", flush=True)
         return
     colmap.check_installed()
     claim(work)
-    for path in (model, models, work / "masks", *colmap.database_files(database)):
+    for path in (model, models, work / masks.FOLDER, *colmap.database_files(database)):
         files.clear(path)  # COLMAP would add to the results of a killed run
     models.mkdir(parents=True)
     if mask_command:
@@ -57,7 +57,7 @@ def colmap_model(images, work, calibration, threads=None, mask_command=None):
         logged(mask_command, work / "masks.log")
     print("  features", flush=True)
     logged(colmap.features(database, images, calibration.model, calibration.parameters, threads,
-                           work / "masks" if mask_command else None), work / "features.log")
+                           work / masks.FOLDER if mask_command else None), work / "features.log")
     still_features.look(database, work, work / "features.log", is_masked=bool(mask_command))
     print("  matches of all pairs", flush=True)
     logged(colmap.matches(database, "exhaustive", threads), work / "matches.log")
@@ -97,10 +97,10 @@ def run(given):
     if given.max_threads < 0:
         raise Failure(f"--max-threads {given.max_threads}: must not be negative")
     photographs.check(given.images)
-    masks.check(given, given.output / "masks")
+    masks.check(given)
     mask_command = None
     if given.masks:
-        mask_command = masks.command(Programs(given.programs), given, given.output / "masks")
+        mask_command = masks.command(Programs(given.programs), given, given.output / masks.FOLDER)
     calibration = Calibration(given.camera_model, given.camera_parameters, given.refine)
     colmap_model(given.images, given.output, calibration, given.max_threads or -1, mask_command)
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The options --masks and --ignore-mask-label: masks of photographs, for COLMAP and for the programs.
 
-COLMAP wants the mask of images/dive/a.jpg as masks/dive/a.jpg.png, in the size of the photograph, and
+COLMAP wants the mask of images/dive/a.jpg as FOLDER/dive/a.jpg.png, in the size of the photograph, and
 takes no features where it is black. The programs find masks of this name, too, and leave out the
 label 0. So one folder serves all: InterfaceCOLMAP writes it from the user's masks, which may have any
 name and label that the programs accept (docs/formats.md, Masks)."""
@@ -11,12 +11,13 @@ import pathlib
 from .failure import Failure
 from .files import resolved
 
+FOLDER = "colmap_masks"  # below the output folder
 LABELS = range(1 << 16)
 
 
 def add_options(parser):
     parser.add_argument("--masks", default="",
-                        help="masks: a folder with a mask for every photograph, as for --mask-path of the "
+                        help="folder with a mask for every photograph, as for --mask-path of the "
                         "programs (docs/formats.md), or one PNG file for all photographs. COLMAP takes "
                         "no features from masked pixels")
     parser.add_argument("--ignore-mask-label", default="", metavar="LABEL",
@@ -24,8 +25,8 @@ def add_options(parser):
                         "is black)")
 
 
-def check(given, folder):
-    """Checks the options, and makes --masks absolute. `folder`: for the masks that the run writes."""
+def check(given):
+    """Checks the options, and makes --masks absolute."""
     label = given.ignore_mask_label
     if label and not given.masks:
         raise Failure(f"--ignore-mask-label {label}: is only for --masks")
@@ -35,7 +36,7 @@ def check(given, folder):
         if not pathlib.Path(given.masks).exists():
             raise Failure(f"--masks {given.masks}: not found")
         given.masks = str(resolved("--masks", given.masks))
-        if pathlib.Path(given.masks).is_relative_to(resolved("--output", folder)):
+        if pathlib.Path(given.masks).is_relative_to(resolved("--output", given.output) / FOLDER):
             raise Failure(f"--masks {given.masks}: lies in the folder that this run writes; move it")
 
 

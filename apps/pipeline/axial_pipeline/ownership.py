@@ -15,7 +15,7 @@ from .failure import Failure
 # What each step may write or remove in the output folder, with any options, in the order of the
 # steps. A name that is a folder stands for everything in the folder.
 WRITES = {
-    "masks": ["masks"],
+    "masks": ["colmap_masks"],
     "features": ["features.db", "features.db-*", "still_features.json", "still_features.png"],
     "matches": ["database.db", "database.db-*", "database.db.tmp"],
     "poses": ["colmap"],

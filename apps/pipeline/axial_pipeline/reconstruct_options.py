@@ -208,7 +208,7 @@ def check(given):
             raise Failure(f"--{name} {path}: not found")
         if path:
             setattr(given, name, str(files.resolved(f"--{name}", path)))
-    masks.check(given, pathlib.Path(given.output) / "masks")
+    masks.check(given)
     file = positions.file_of(given.scale_from)
     if file is not None:
         if not pathlib.Path(file).is_file():

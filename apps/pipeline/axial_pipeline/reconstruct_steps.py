@@ -25,7 +25,7 @@ def take_largest(models):
 
 def masks_of(given, out):
     """The folder of COLMAP's masks; None without --masks."""
-    return out / "masks" if given.masks else None
+    return out / masks.FOLDER if given.masks else None
 
 
 def colmap_steps(given, out):
