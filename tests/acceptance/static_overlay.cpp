@@ -4,7 +4,8 @@
 //     static_overlay PHOTOGRAPH OUTPUT.png
 //
 // The arm is a band from the lower left corner towards the middle. It is covered by blocks of
-// random grey, the same in every photograph, and takes 7 % of the pixels.
+// random grey, the same in every photograph, and takes about 10 % of the pixels.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <iostream>
@@ -16,8 +17,6 @@
 namespace {
 
 using namespace axial;
-
-constexpr int kBlock = 5;  // [px]
 
 // A random number of a block: the finaliser of splitmix64.
 std::uint64_t random_of(int x, int y) {
@@ -36,11 +35,12 @@ bool is_on_arm(int x, int y, const cv::Size& size) {
 
 int run(const char* input, const char* output) {
   cv::Mat3b image = io::read_color_image(input);
+  const int block = std::max(2, image.cols / 200);  // [px]
   for (int y = 0; y < image.rows; ++y)
     for (int x = 0; x < image.cols; ++x)
       if (is_on_arm(x, y, image.size()))
         image(y, x) =
-            cv::Vec3b::all(static_cast<std::uint8_t>(random_of(x / kBlock, y / kBlock) % 256));
+            cv::Vec3b::all(static_cast<std::uint8_t>(random_of(x / block, y / block) % 256));
   io::write_png(output, image);
   return 0;
 }
