@@ -8,13 +8,17 @@
 
 namespace axial {
 
+// `text` with ASCII letters in lower case.
+inline std::string lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
 // The extension of a file's name in lower case, with the dot: ".png" for "A.PNG". Empty if the name
 // has no extension.
 inline std::string lower_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
+  return lower_case(file.extension().string());
 }
 
 // True if the extension is .jpg or .jpeg, in upper or lower case.

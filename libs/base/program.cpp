@@ -19,7 +19,9 @@
 #include "base/log.h"
 #include "base/log_file.h"
 #include "base/message.h"
+#include "base/newer_options.h"
 #include "base/out_of_memory.h"
+#include "base/output_name.h"
 #include "base/standard_streams.h"
 
 namespace axial {
@@ -184,6 +186,7 @@ po::parsed_options parse_config(std::istream& in, const po::options_description&
 
 void apply(CommonOptions& common) {
   if (!common.log_file.empty()) {
+    refuse_control_characters(common.log_file, "--log-file");
     try {
       log_to_file_too(in_working_folder(common, common.log_file));
     } catch (const Error& error) {
@@ -289,6 +292,7 @@ fs::path in_working_folder(const CommonOptions& common, const std::string& path)
 fs::path output_in_working_folder(const CommonOptions& common, const std::string& path,
                                   const std::string& option) {
   const fs::path file = in_working_folder(common, path);
+  refuse_control_characters(path, option);
   if (!file.empty() && !file.has_filename())
     fail("{} {}: must be the name of a file, not of a folder", option, path);
   return file;
@@ -315,6 +319,9 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
       if (!help) std::cerr << program.name << ": no input file given (-i FILE)\n";
       return parsed;
     }
+  } catch (const po::unknown_option& error) {
+    refuse_newer_option(program.name, error.get_option_name());
+    fail("command line: {}", as_message(error.what()));
   } catch (const po::error& error) {
     fail("command line: {}", as_message(error.what()));
   }

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Keeps two runs from writing the same output at the same time.
+#pragma once
+
+#include <filesystem>
+
+namespace axial {
+
+// Whether a run writes an output alone, or together with other runs that write other parts of it.
+enum class LockUse { alone, shared };
+
+// Locks an output from construction to destruction. Two locks of one output exclude each other,
+// unless both are LockUse::shared. Processes lock the file <output>.lock by flock(), so that the
+// lock of a killed process ends with the process. The file holds a line for each process that has
+// the lock: its number, its machine, and the time since when. The last process removes the file; a
+// file that a killed process left behind is used and removed by the next one.
+class OutputLock {
+ public:
+  // Throws an Error that names `output` and the process that holds the lock if another process, or
+  // another object of this process, holds it. If the file system has no locks, or if the folder
+  // does not exist or cannot be written, nothing is locked and no Error is thrown.
+  explicit OutputLock(std::filesystem::path output, LockUse use = LockUse::alone);
+  ~OutputLock();
+  OutputLock(const OutputLock&) = delete;
+  OutputLock& operator=(const OutputLock&) = delete;
+
+ private:
+  std::filesystem::path file_;
+  int descriptor_ = -1;  // below 0: nothing is locked
+};
+
+}  // namespace axial

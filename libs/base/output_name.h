@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The names of output files: one rule for all programs. A known extension of a name is replaced by
+// the extension of the file that is written. Every other dot belongs to the name: the outputs
+// "reef.2024" and "reef.2025" are different files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "base/program.h"
+
+namespace axial {
+
+// Returns the extension of `path` in lower case if it is known: .mvs, .ply, .obj, .glb or .gltf, in
+// upper or lower case. Returns an empty text for every other path.
+std::string known_extension(const std::filesystem::path& path);
+
+// Returns `path` without its extension if the extension is known, otherwise `path` itself.
+std::filesystem::path without_known_extension(std::filesystem::path path);
+
+// Returns `path` with `extension` (".housing.json"), which replaces a known extension and is
+// appended to every other path.
+std::filesystem::path with_extension(const std::filesystem::path& path, std::string_view extension);
+
+// Throws an Error that names `option` and `path` if `path` contains a control character, for
+// example a line break. Such a name cannot be written into the header of a PLY or into an MTL
+// file, so that the result could not be read again.
+void refuse_control_characters(const std::filesystem::path& path, const std::string& option);
+
+// Throws an Error if `path` has the extension of a format of clouds or meshes that no program
+// writes (.stl, .las and others): the user expects this format. `option`: as above.
+void refuse_other_format(const std::filesystem::path& path, const std::string& option);
+
+// Returns the path of an output: output_in_working_folder() (base/program.h) of `given`, the value
+// of `option`, or `otherwise` if `given` is empty. Errors as for output_in_working_folder(). In
+// addition, `otherwise` must not contain control characters.
+std::filesystem::path output_or(const CommonOptions& common, const std::string& given,
+                                const std::filesystem::path& otherwise, const std::string& option);
+
+// Returns in_working_folder() for a folder to write, the value of `option`. An empty path stays
+// empty. Throws the Error of refuse_control_characters().
+std::filesystem::path folder_in_working_folder(const CommonOptions& common, const std::string& path,
+                                               const std::string& option);
+
+}  // namespace axial
