@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "densify/densify.h"
 
+#include <algorithm>
+
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/output_lock.h"
 #include "base/parallel.h"
 #include "densify/agreement_check.h"
 #include "densify/cloud_exports.h"
@@ -56,6 +59,30 @@ ExistingMaps checked_maps(Project& project, const Settings& settings) {
   return existing;
 }
 
+// Runs that make parts of the maps or read complete maps can share a folder. A run that makes all
+// maps removes those of earlier stages, which another run would miss.
+LockUse use_of_maps(const Project& project, const Settings& settings,
+                    const ExistingMaps& existing) {
+  if (!settings.make_maps || settings.parts > 0) return LockUse::shared;
+  const std::string made_from = final_made_from(project, settings);
+  const bool complete = std::ranges::all_of(project.references, [&](std::size_t image) {
+    return existing[image].origin == io::DmapOrigin::ours && existing[image].made_from == made_from;
+  });
+  return complete ? LockUse::shared : LockUse::alone;
+}
+
+// The name by which runs lock the depth maps of a folder.
+fs::path maps_in(const Settings& settings) {
+  return settings.working_folder / "depth_maps";
+}
+
+// Runs for a part, a stage or a list do not write the output itself.
+LockUse use_of_output(const Settings& settings) {
+  const bool is_part = settings.tile > 0 || !settings.until.empty() || !settings.plan.empty() ||
+                       !settings.neighbour_lists_output.empty();
+  return is_part ? LockUse::shared : LockUse::alone;
+}
+
 // If the maps are not fused, the sparse cloud gets the dense cloud's name, as in OpenMVS.
 std::size_t write_sparse_cloud(const Project& project, const Settings& settings,
                                const fs::path& ply) {
@@ -100,6 +127,7 @@ Report make_stage(const Settings& settings, const SceneObserver& observer) {
   stages_to_make(settings);  // throws for a wrong name
   Project project = load_project(settings, observer);
   const ExistingMaps existing = checked_maps(project, settings);
+  const OutputLock maps(maps_in(settings), use_of_maps(project, settings, existing));
   const MemoryPlan plan = plan_memory(project, settings);
   check_outputs(project, settings);
   ImageStore images(project, settings, plan.cached_images);
@@ -127,6 +155,7 @@ Report make_tile(const Project& project, const Settings& settings, const MemoryP
 Report reconstruct(const Settings& settings, const SceneObserver& observer) {
   Project project = load_project(settings, observer);
   const ExistingMaps existing = checked_maps(project, settings);
+  const OutputLock maps(maps_in(settings), use_of_maps(project, settings, existing));
   const MemoryPlan plan = plan_memory(project, settings);
   check_outputs(project, settings);
   check_pinhole_export(project, settings);
@@ -157,6 +186,7 @@ Report densify(const Settings& settings, const SceneObserver& observer) {
   share_one_heap();
   const ThreadLimit threads(settings.max_threads);
   make_folder_of(settings.output);
+  const OutputLock lock(settings.output, use_of_output(settings));
   check_outputs(settings);
   if (only_exports(settings)) return export_points(settings);
   if (!settings.neighbour_lists_output.empty()) return write_lists(settings, observer);

@@ -15,6 +15,7 @@
 #include "depth/filters.h"
 #include "depth/patch_match.h"
 #include "depth/weak_texture.h"
+#include "io/openmvs/scene_files.h"
 
 namespace axial::densify {
 namespace fs = std::filesystem;
@@ -169,7 +170,7 @@ std::size_t stages_to_make(const Settings& settings) {
 }
 
 fs::path depth_map_path(const Project& project, const Settings& settings, std::size_t image) {
-  return settings.working_folder / fmt::format("depth{:04}.dmap", project.views[image].id);
+  return settings.working_folder / io::depth_map_name(project.views[image].id);
 }
 
 std::string final_made_from(const Project& project, const Settings& settings) {

@@ -8,6 +8,7 @@
 #include "densify/tile_files.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/housing.h"
+#include "io/openmvs/scene_files.h"
 
 namespace axial::densify {
 namespace fs = std::filesystem;
@@ -60,12 +61,9 @@ void check_side_output(const std::string& setting, const fs::path& output,
 }  // namespace
 
 std::vector<fs::path> scene_files(const Settings& settings) {
-  std::vector<fs::path> files{settings.input,
-                              housing_file(settings),
-                              io::lenses_beside(settings.input),
-                              io::geo_offset_beside(settings.input),
-                              settings.point_cloud,
-                              settings.neighbour_lists};
+  std::vector<fs::path> files =
+      io::files_of_scene({settings.input, settings.working_folder, settings.housing});
+  files.insert(files.end(), {settings.point_cloud, settings.neighbour_lists});
   files.insert(files.end(), settings.other_inputs.begin(), settings.other_inputs.end());
   return files;
 }

@@ -6,7 +6,7 @@
 
 namespace axial::densify {
 
-// The files from which the scene is read: the scene file, its housing, lenses and offset,
+// The files that belong to the input scene (files_of_scene() in io/openmvs/scene_files.h),
 // Settings::point_cloud, Settings::neighbour_lists and Settings::other_inputs. A path may be
 // empty, and a file need not exist.
 std::vector<std::filesystem::path> scene_files(const Settings& settings);

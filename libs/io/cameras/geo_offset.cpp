@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/output_name.h"
 #include "io/bytes/json.h"
 #include "private/cameras/port_json.h"
 
@@ -53,10 +54,7 @@ void warn_if_far(const Scene& scene, const fs::path& file) {
 }  // namespace
 
 fs::path geo_offset_beside(const fs::path& scene_path) {
-  fs::path path = scene_path;
-  path.replace_extension();
-  path += ".geo.json";
-  return path;
+  return with_extension(scene_path, ".geo.json");
 }
 
 std::optional<LocalFrame> read_geo_offset_beside(const fs::path& scene_path) {

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/output_name.h"
 #include "io/cameras/calibmar.h"
 #include "private/bytes/text_reader.h"
 #include "private/cameras/image_names.h"
@@ -209,10 +210,7 @@ void write_housing(const fs::path& path, const Housing& housing) {
 }
 
 fs::path housing_beside(const fs::path& scene_path) {
-  fs::path path = scene_path;
-  path.replace_extension();
-  path += ".housing.json";
-  return path;
+  return with_extension(scene_path, ".housing.json");
 }
 
 Housing for_images(const Housing& housing, std::span<const NamedCamera> images,

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/output_name.h"
 #include "private/cameras/image_names.h"
 #include "private/cameras/lens_json.h"
 
@@ -90,10 +91,7 @@ void check_names(const SceneLenses& lenses, const Scene& scene, const fs::path& 
 }  // namespace
 
 fs::path lenses_beside(const fs::path& scene_path) {
-  fs::path path = scene_path;
-  path.replace_extension();
-  path += ".lenses.json";
-  return path;
+  return with_extension(scene_path, ".lenses.json");
 }
 
 SceneLenses read_lenses(const fs::path& path) {

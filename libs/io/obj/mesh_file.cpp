@@ -1,21 +1,46 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/obj/mesh_file.h"
 
+#include "base/error.h"
+#include "base/file_extension.h"
+#include "base/output_name.h"
+#include "io/obj/mesh_glb.h"
 #include "io/obj/mesh_obj.h"
+#include "io/openmvs/scene_files.h"
 #include "io/ply/ply.h"
 
 namespace axial::io {
+namespace {
 
-std::filesystem::path mesh_file(std::filesystem::path path, std::string type, bool type_given) {
-  const std::string extension = path.extension().string();
-  if (!type_given && extension == ".obj") type = "obj";
-  if (extension == ".mvs" || extension == ".ply" || extension == ".obj") path.replace_extension();
-  return path += "." + type;
+bool is_written(const std::string& type) {
+  return type == "ply" || type == "obj" || type == "glb";
+}
+
+// The type that the user gave, or that the extension of the output asks for.
+std::string type_of(const MeshFile& file) {
+  const std::string given = lower_case(file.type);
+  if (!is_written(given)) fail("--export-type {}: must be one of ply, obj, glb", file.type);
+  const std::string extension = known_extension(file.output);
+  if (file.type_given || extension.empty() || extension == ".mvs") return given;
+  if (!is_written(extension.substr(1)))
+    fail("--output-file {}: must end in .ply, .obj or .glb", file.output.string());
+  return extension.substr(1);
+}
+
+}  // namespace
+
+std::filesystem::path mesh_file(const MeshFile& file) {
+  refuse_other_format(file.output, "--output-file");
+  const std::string type = type_of(file);
+  return mesh_beside(file.scene, file.output, file.ending, type == "ply") += "." + type;
 }
 
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, const LocalFrame& frame) {
-  if (path.extension() == ".obj")
+  const std::string extension = lower_extension(path);
+  if (extension == ".obj")
     write_mesh_obj(path, mesh, frame);
+  else if (extension == ".glb")
+    write_mesh_glb(path, mesh, frame);
   else
     write_mesh_ply(path, mesh, {frame});
 }

@@ -10,16 +10,25 @@
 
 namespace axial::io {
 
-// Returns the path of the mesh file to write. `path` is the value of the option -o. `type` is the
-// value of the option --export-type, "ply" or "obj". `type_given` is true if the user gave the
-// type. If the user did not give the type and `path` ends in .obj, the type is "obj". The type
-// becomes the extension of the result: it replaces the extensions .ply, .obj and .mvs, and is
-// appended to any other path. `type` is not checked.
-std::filesystem::path mesh_file(std::filesystem::path path, std::string type, bool type_given);
+// The path of the mesh file to write.
+struct MeshFile {
+  std::filesystem::path scene;   // the scene from which the mesh is made
+  std::filesystem::path output;  // the value of the option -o, as a path; empty: not given
+  std::string type;              // the value of the option --export-type
+  bool type_given = false;       // the user gave the type
+  std::string ending;            // of the default name: "_mesh" for <scene>_mesh.ply
+};
 
-// Writes the mesh as OBJ if the extension of `path` is .obj, otherwise as PLY. `frame` is the frame
-// of the mesh's positions. Positions are written in `frame`, and the file states its origin unless
-// `frame` is the world. OBJ has no colours. Errors as for write_mesh_ply() and write_mesh_obj().
+// Returns the path of the mesh file. The type is "ply", "obj" or "glb", in upper or lower case. If
+// the user did not give the type, the extension of `output` decides, if it is .obj or .glb. The
+// rules for the name are those of mesh_beside() (io/openmvs/scene_files.h). Error that names the
+// option for another type, and for an output with the extension of a format that is not written.
+std::filesystem::path mesh_file(const MeshFile& file);
+
+// Writes the mesh in the format of the extension of `path`: OBJ, GLB, otherwise PLY. `frame` is the
+// frame of the mesh's positions. Positions are written in `frame`, and the file states its origin
+// unless `frame` is the world. OBJ and GLB have no colours. Errors as for write_mesh_ply(),
+// write_mesh_obj() and write_mesh_glb().
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, const LocalFrame& frame);
 
 }  // namespace axial::io

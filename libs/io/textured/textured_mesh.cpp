@@ -11,6 +11,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "private/textured/textured_writers.h"
 
 namespace axial::io {
@@ -88,7 +89,7 @@ std::size_t files_before_textures(TexturedFormat format) {
 
 std::optional<TexturedFormat> textured_format(std::string_view name) {
   for (const auto& [known, format] : kFormats)
-    if (known == name) return format;
+    if (known == lower_case(std::string(name))) return format;
   return {};
 }
 

@@ -18,8 +18,8 @@ namespace axial::io {
 // glb: one binary file of glTF. gltf: a JSON file, a binary file and the images of the textures.
 enum class TexturedFormat { ply, obj, glb, gltf };
 
-// Returns the format of the name "ply", "obj", "glb" or "gltf", in lower case; nothing for another
-// name.
+// Returns the format of the name "ply", "obj", "glb" or "gltf", in upper or lower case; nothing for
+// another name.
 std::optional<TexturedFormat> textured_format(std::string_view name);
 
 // Returns the paths of all files that write_textured_mesh writes for a mesh with `textures`
