@@ -7,6 +7,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/output_name.h"
 #include "base/program.h"
 #include "base/same_file.h"
 #include "base/version.h"
@@ -44,7 +45,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   if (output.empty()) fail("--output-folder is missing");
   options.model = in_working_folder(options.parsed.common, input);
   options.reference = in_working_folder(options.parsed.common, reference);
-  options.output = in_working_folder(options.parsed.common, output);
+  options.output = folder_in_working_folder(options.parsed.common, output, "--output-folder");
   return options;
 }
 

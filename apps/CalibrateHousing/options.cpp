@@ -110,13 +110,16 @@ Options parse_command_line(int argc, const char* const* argv) {
   const auto path = [&](const std::string& text) {
     return in_working_folder(options.parsed.common, text);
   };
+  const auto output = [&](const std::string& text, const char* option) {
+    return output_in_working_folder(options.parsed.common, text, option);
+  };
   for (const std::string& input : texts.input) options.input.push_back(path(input));
   options.lens = path(texts.lens);
   options.housing = path(texts.housing);
-  options.output = path(texts.output);
-  options.calibmar = path(texts.calibmar);
-  options.report = path(texts.report);
-  options.coverage = path(texts.coverage);
+  options.output = output(texts.output, "--output-file");
+  options.calibmar = output(texts.calibmar, "--calibmar");
+  options.report = output(texts.report, "--report");
+  options.coverage = output(texts.coverage, "--coverage");
   options.limits.normal = max_normal_degrees * kDegree;
   check(options, max_normal_degrees);
   if (texts.board.empty()) fail("--board is missing: the board in the photographs");

@@ -13,11 +13,9 @@
 #include "base/progress.h"
 #include "base/same_file.h"
 #include "compare/write_changes.h"
-#include "io/cameras/geo_offset.h"
-#include "io/cameras/housing.h"
-#include "io/cameras/lenses.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
+#include "io/openmvs/scene_files.h"
 #include "io/openmvs/scene_with_cameras.h"
 #include "io/ply/ply.h"
 #include "io/textured/textured_mesh.h"
@@ -85,8 +83,8 @@ void keep_inputs(const Settings& settings) {
   for (const fs::path& file : io::files_of_mesh(settings.after)) inputs.push_back(file);
   for (const fs::path& scene : {settings.scene_before, settings.scene_after}) {
     if (scene.empty()) continue;
-    inputs.insert(inputs.end(), {scene, io::housing_beside(scene), io::lenses_beside(scene),
-                                 io::geo_offset_beside(scene)});
+    for (const fs::path& file : io::files_of_scene({scene, settings.working_folder, {}}))
+      inputs.push_back(file);
   }
   require_no_inputs(outputs, inputs, "--output-file");
   std::error_code ignored;

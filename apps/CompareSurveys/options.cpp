@@ -2,6 +2,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/output_name.h"
 #include "base/setting_names.h"
 #include "base/version.h"
 #include "map/up_direction.h"
@@ -98,10 +99,8 @@ void convert(const Raw& raw, Options& options) {
   settings.scene_before = in_working_folder(common, raw.scene);
   settings.scene_after = in_working_folder(common, raw.other_scene);
   settings.working_folder = in_working_folder(common, ".");
-  settings.output =
-      raw.output.empty()
-          ? settings.before.parent_path() / (settings.before.stem().string() + "_change")
-          : output_in_working_folder(common, raw.output, "--output-file");
+  settings.output = output_or(
+      common, raw.output, without_known_extension(settings.before) += "_change", "--output-file");
   settings.up = map::parse_up(raw.up, settings.epsg, option_of);
   settings.compare.align = raw.align == "icp";
   if (raw.sigma_before > 0) settings.compare.sigmas = {raw.sigma_before, raw.sigma_after};

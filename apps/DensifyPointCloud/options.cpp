@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
 
+#include <cmath>
 #include <vector>
 
 #include "base/error.h"
 #include "base/fraction.h"
 #include "base/log.h"
 #include "base/not_built.h"
+#include "base/output_name.h"
 #include "base/unused_input.h"
 #include "base/version.h"
 #include "dense_config.h"
@@ -26,7 +28,8 @@ struct Raw {
   std::string point_cloud, neighbour_lists, neighbour_lists_output, dense_config, pinhole_export;
   std::string report, part, plan, tile;
   std::string camera_model = "auto", projection = "exact", warp = "affine", precision = "float";
-  int fusion_mode = 0, estimate_roi = 2, tower_mode = 0;
+  int fusion_mode = 0, tower_mode = 0;
+  double estimate_roi = 2;
 };
 
 std::vector<NotBuilt> not_built() {
@@ -118,7 +121,8 @@ void declare_fusion(OptionList& list, Raw& raw, Settings& settings) {
       .add_with_default("estimate-uncertainty", &settings.fusion.errors,
                         "also write each point's expected error [m] and confidence")
       .add_with_default("estimate-roi", &raw.estimate_roi,
-                        "region of interest from cameras and points: 0 off, 1 on, 2 adaptive")
+                        "region of interest from cameras and points: 0 off, 1 on, 2 adaptive (also "
+                        "1.1, the default of OpenMVS 2.4)")
       .add_with_default("roi-border", &settings.roi_border,
                         "above 0 multiplies the region's size, below 0 adds to it [scene units]")
       .add_with_default("crop-to-roi", &settings.crop_to_roi,
@@ -200,7 +204,9 @@ void check_values(const Settings& settings, const Raw& raw) {
   check_range("fusion-mode", raw.fusion_mode, -1, 1);
   check_range("estimate-colors", settings.estimate_colors, 0u, 2u);
   check_range("estimate-normals", settings.estimate_normals, 0u, 2u);
-  check_range("estimate-roi", raw.estimate_roi, 0, 2);
+  if (const double value = raw.estimate_roi; value != 1.1 && value != std::floor(value))
+    fail("--estimate-roi {}: must be 0, 1 or 2; 1.1, the default of OpenMVS 2.4, means 2", value);
+  check_range("estimate-roi", raw.estimate_roi, 0.0, 2.0);
   check_range("max-memory", settings.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
   io::check_bit_depth(settings.bit_depth, option_of("bit_depth"));
   check_range("roi-border", settings.roi_border, -1e6, 1e6);
@@ -245,19 +251,21 @@ void take_paths(const CommonOptions& common, const Raw& raw, Settings& settings)
   const auto path = [&](const std::string& given) { return in_working_folder(common, given); };
   settings.working_folder = common.working_folder;
   settings.input = path(raw.input);
-  settings.output = path(raw.output);
-  if (settings.output.empty())
-    settings.output =
-        settings.input.parent_path() / (settings.input.stem().string() + "_dense.mvs");
-  settings.output.replace_extension(".mvs");
+  settings.output = with_extension(
+      output_or(common, raw.output, without_known_extension(settings.input) += "_dense",
+                "--output-file"),
+      ".mvs");
+  refuse_other_format(path(raw.output), "--output-file");
   settings.housing = path(raw.housing);
   settings.point_cloud = path(raw.point_cloud);
   settings.neighbour_lists = path(raw.neighbour_lists);
-  settings.neighbour_lists_output = path(raw.neighbour_lists_output);
-  settings.report = path(raw.report);
+  settings.neighbour_lists_output =
+      output_in_working_folder(common, raw.neighbour_lists_output, "--output-view-neighbors-file");
+  settings.report = output_in_working_folder(common, raw.report, "--report-file");
   settings.mask_folder = path(raw.mask_path);
-  settings.pinhole_export = path(raw.pinhole_export);
-  settings.plan = path(raw.plan);
+  settings.pinhole_export =
+      folder_in_working_folder(common, raw.pinhole_export, "--pinhole-export");
+  settings.plan = output_in_working_folder(common, raw.plan, "--plan");
 }
 
 // From -v 3 on, pictures of the depth maps are written beside them, as by OpenMVS. From -v 5 on,
@@ -311,7 +319,8 @@ void convert(const Raw& raw, Options& options) {
   take_part(raw.part, settings);
   check_purpose(settings);
   check_pinhole_export(settings);
-  settings.region = static_cast<RegionMode>(raw.estimate_roi);
+  settings.region = raw.estimate_roi == 1.1 ? RegionMode::adaptive
+                                            : static_cast<RegionMode>(int(raw.estimate_roi));
   settings.fusion.two_if_undisputed = !given(options.parsed, "number-views-fuse");
   settings.pictures = pictures_of(common.verbosity);
   settings.max_threads = common.max_threads;

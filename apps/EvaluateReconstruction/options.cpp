@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/output_name.h"
 #include "base/parse_number.h"
 #include "base/split.h"
 #include "base/unused_input.h"
@@ -222,21 +223,25 @@ Options parse_command_line(int argc, const char* const* argv) {
   const auto path = [&](const std::string& text) {
     return in_working_folder(options.parsed.common, text);
   };
+  const auto output = [&](const std::string& text, const char* option) {
+    return output_in_working_folder(options.parsed.common, text, option);
+  };
   options.input = path(texts.input);
   options.truth = path(texts.truth);
   options.tolerances = parse_tolerances(texts.tolerance);
   options.cameras = path(texts.cameras);
   options.housing = path(texts.housing);
   options.estimated = path(texts.estimated);
-  options.json = path(texts.json);
-  options.error_cloud = path(texts.error_cloud);
-  options.error_mesh = path(texts.error_mesh);
+  options.json = output(texts.json, "--json");
+  options.error_cloud = output(texts.error_cloud, "--error-cloud");
+  options.error_mesh = output(texts.error_mesh, "--error-mesh");
   options.rendered_views = names_of(texts.render);
-  options.render_folder = path(texts.render_folder);
+  options.render_folder =
+      folder_in_working_folder(options.parsed.common, texts.render_folder, "--render-folder");
   options.photographs = path(texts.photographs);
-  options.picture = path(texts.picture);
-  options.aligned = path(texts.aligned);
-  options.transform = path(texts.transform);
+  options.picture = output(texts.picture, "--picture");
+  options.aligned = output(texts.aligned, "--aligned");
+  options.transform = output(texts.transform, "--transform-out");
   if (options.color_max == 0) options.color_max = 2 * options.tolerances.front();
   check(options);
   warn_of_no_effect(options);

@@ -86,7 +86,8 @@ void check_outputs(const Options& options, const fs::path& model_folder,
   for (const io::ColmapImage& image : model.images)
     inputs.push_back(options.image_folder / image.name);
   const std::vector<fs::path> outputs{options.scene_file, io::housing_beside(options.scene_file),
-                                      io::lenses_beside(options.scene_file)};
+                                      io::lenses_beside(options.scene_file),
+                                      io::geo_offset_beside(options.scene_file)};
   require_no_inputs(outputs, inputs, "--output-file");
 }
 
@@ -167,6 +168,39 @@ Scene read_scene(const Options& options, LocalFrame& frame) {
   return scene;
 }
 
+// The longest end of `path` that is a file below `folder`; empty if there is none.
+fs::path end_below(const fs::path& path, const fs::path& folder) {
+  std::error_code error;
+  for (auto begin = path.begin(); begin != path.end(); ++begin) {
+    fs::path end;
+    for (auto part = begin; part != path.end(); ++part) end /= *part;
+    if (end.is_relative() && fs::is_regular_file(folder / end, error)) return end;
+  }
+  return {};
+}
+
+// Takes the images from the folder of --image-folder if it has all of them: a scene often names
+// another place where they were before. Returns the folder below which the images are.
+fs::path find_images(const Options& options, Scene& scene) {
+  const fs::path& folder = options.image_folder;
+  if (folder.empty()) return io::common_image_folder(scene);
+  std::vector<std::string> paths;
+  for (const SceneImage& image : scene.images) {
+    const fs::path stored(image.path), end = stored.lexically_relative(folder);
+    const bool is_below = !end.empty() && *end.begin() != "..";
+    const fs::path found = is_below ? end : end_below(stored, folder);
+    if (image.calibrated && found.empty()) {
+      const fs::path common = io::common_image_folder(scene);
+      log_warning("--image-folder {}: has no file for {}: the images' names count from {}",
+                  folder.string(), image.path, common.string());
+      return common;
+    }
+    paths.push_back(found.empty() ? image.path : (folder / found).string());
+  }
+  for (std::size_t i = 0; i < paths.size(); ++i) scene.images[i].path = paths[i];
+  return folder;
+}
+
 // A model with ports is written for COLMAP-Underwater, whose files can hold ports.
 void write_export(const Options& options, const fs::path& folder, const io::ColmapModel& model,
                   bool behind_ports) {
@@ -179,9 +213,8 @@ void write_export(const Options& options, const fs::path& folder, const io::Colm
 
 int export_scene(const Options& options) {
   LocalFrame frame;
-  const Scene scene = read_scene(options, frame);
-  const fs::path images =
-      options.image_folder.empty() ? io::common_image_folder(scene) : options.image_folder;
+  Scene scene = read_scene(options, frame);
+  const fs::path images = find_images(options, scene);
   io::ColmapModel model = io::export_colmap_model(scene, images);
   io::leave(frame, model);
   const fs::path folder = options.export_folder / "sparse";

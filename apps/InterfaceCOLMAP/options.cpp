@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/output_name.h"
 #include "base/setting_names.h"
 #include "base/unused_input.h"
 #include "base/version.h"
@@ -100,8 +101,9 @@ void set_export(const Values& values, Options& options) {
   const CommonOptions& common = options.parsed.common;
   options.scene_file = std::exchange(options.colmap_folder, {});
   refuse_file_name(values.output);
-  options.export_folder = values.output.empty() ? options.scene_file.parent_path()
-                                                : in_working_folder(common, values.output);
+  options.export_folder = values.output.empty()
+                              ? options.scene_file.parent_path()
+                              : folder_in_working_folder(common, values.output, "--output-file");
   std::error_code error;
   if (fs::exists(options.export_folder, error) && !fs::is_directory(options.export_folder, error))
     fail("--output-file {}: is a file, but a scene (.mvs) is exported to a folder", values.output);
@@ -128,8 +130,9 @@ void set_import(const Values& values, Options& options) {
   std::error_code error;
   if (!fs::is_directory(options.colmap_folder, error))
     fail("{}: is not a folder", options.colmap_folder.string());
-  options.scene_file = values.output.empty() ? options.colmap_folder / "scene.mvs"
-                                             : in_working_folder(common, values.output);
+  options.scene_file = with_extension(
+      output_or(common, values.output, options.colmap_folder / "scene", "--output-file"), ".mvs");
+  refuse_other_format(values.output, "--output-file");
   if (given(options.parsed, "undistort")) options.undistort = values.undistort;
   options.housing_file = in_working_folder(common, values.housing);
   find_image_folder(values.image_folder, options);

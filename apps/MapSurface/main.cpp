@@ -14,10 +14,9 @@
 #include "base/naming.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
-#include "io/cameras/geo_offset.h"
-#include "io/cameras/lenses.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
+#include "io/openmvs/scene_files.h"
 #include "io/textured/textured_mesh.h"
 #include "map/height_error.h"
 #include "map/pixel_width.h"
@@ -81,11 +80,10 @@ TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame) {
 }
 
 void keep_inputs(const Settings& settings, const texture::Photographs& photographs) {
-  const fs::path& scene = settings.scene.scene;
   std::vector<fs::path> inputs = photographs.files();
-  inputs.insert(inputs.end(), {scene, io::housing_file(settings.scene), io::lenses_beside(scene),
-                               io::geo_offset_beside(scene), settings.photographs.views_file});
+  for (const fs::path& file : io::files_of_scene(settings.scene)) inputs.push_back(file);
   for (const fs::path& file : io::files_of_mesh(settings.mesh)) inputs.push_back(file);
+  inputs.push_back(settings.photographs.views_file);
   const std::vector<fs::path> outputs = map_files(settings).all();
   require_no_inputs(outputs, inputs, "--output-file");
   std::error_code ignored;

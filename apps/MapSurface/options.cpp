@@ -3,9 +3,11 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/output_name.h"
 #include "base/setting_names.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"
+#include "io/openmvs/scene_files.h"
 #include "io/openmvs/scene_options.h"
 #include "map/up_direction.h"
 #include "settings.h"
@@ -105,11 +107,9 @@ void convert(const Raw& raw, Options& options) {
   const CommonOptions& common = options.parsed.common;
   settings.scene = io::scene_files(raw.scene, raw.input, common);
   const fs::path& scene = settings.scene.scene;
-  settings.mesh = raw.mesh.empty() ? fs::path(scene).replace_extension(".ply")
-                                   : in_working_folder(common, raw.mesh);
-  settings.output = raw.output.empty()
-                        ? scene.parent_path() / (scene.stem().string() + "_map")
-                        : output_in_working_folder(common, raw.output, "--output-file");
+  settings.mesh = raw.mesh.empty() ? io::cloud_beside(scene) : in_working_folder(common, raw.mesh);
+  settings.output =
+      output_or(common, raw.output, without_known_extension(scene) += "_map", "--output-file");
   settings.up = map::parse_up(raw.up, settings.epsg, option_of);
   take_masks(options, raw, settings.photographs);
 }

@@ -5,12 +5,13 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/naming.h"
+#include "base/output_lock.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
-#include "io/cameras/geo_offset.h"
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
+#include "io/openmvs/scene_files.h"
 #include "io/textured/textured_mesh.h"
 #include "options.h"
 #include "scene/region.h"
@@ -24,13 +25,15 @@ namespace fs = std::filesystem;
 // The memory of the program itself: code and libraries, stacks, small blocks.
 constexpr std::uint64_t kProgramBytes = 60 * kMegabyte;
 
+// Runs that make tiles of one mesh at the same time are no rivals.
+LockUse lock_use(const Options& options) {
+  return options.tile > 0 ? LockUse::shared : LockUse::alone;
+}
+
 void check_outputs(const Options& options) {
-  std::vector<fs::path> inputs{options.scene.scene, io::housing_file(options.scene),
-                               io::lenses_beside(options.scene.scene),
-                               io::geo_offset_beside(options.scene.scene), cloud_file(options)};
+  std::vector<fs::path> inputs = io::files_of_scene(options.scene);
+  inputs.push_back(cloud_file(options));
   for (const fs::path& file : io::files_of_mesh(options.mesh)) inputs.push_back(file);
-  std::error_code ignored;
-  fs::create_directories(options.output.parent_path(), ignored);
   require_not_an_input(options.output, inputs, "--output-file");
   require_writable(options.output);
 }
@@ -71,6 +74,9 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
   const ThreadLimit threads(options.parsed.common.max_threads);
+  std::error_code ignored;
+  fs::create_directories(options.output.parent_path(), ignored);
+  const OutputLock lock(options.output, lock_use(options));
   check_outputs(options);
   if (const auto counts = io::count_mvs(options.scene.scene))
     memory_of(options).require(counts->reading_bytes(), "reading " + options.scene.scene.string());

@@ -9,6 +9,7 @@
 #include "base/fraction.h"
 #include "base/log.h"
 #include "base/not_built.h"
+#include "base/output_name.h"
 #include "base/setting_names.h"
 #include "base/version.h"
 #include "io/obj/mesh_file.h"
@@ -16,8 +17,6 @@
 
 namespace axial::apps {
 namespace {
-
-namespace fs = std::filesystem;
 
 // The values of the command line before they are checked and converted.
 struct Raw {
@@ -49,7 +48,7 @@ void declare_io(OptionList& list, Raw& raw, Options& options) {
       .add("pointcloud-file,p", &raw.cloud,
            "dense cloud with views (<input>.ply, or the scene's points if there is no such file)")
       .add("output-file,o", &raw.output, "mesh to write (<input>_mesh.ply)")
-      .add_with_default("export-type", &raw.export_type, "format of the mesh: ply or obj")
+      .add_with_default("export-type", &raw.export_type, "format of the mesh: ply, obj or glb")
       .add_with_default("max-memory", &options.max_memory,
                         "largest memory to use [MB] (0: 70 % of the free memory)")
       .add_with_default("tiles", &options.tiles,
@@ -103,7 +102,7 @@ void check_range(const std::string& name, T value, T low, T high) {
     fail("--{} {}: must be from {} to {}", name, value, low, high);
 }
 
-void check_values(const Options& options, const Raw& raw) {
+void check_values(const Options& options) {
   const mesh::ReconstructOptions& settings = options.reconstruct;
   check_range("min-point-distance", settings.merge.min_distance, 0.0, 1e3);
   check_range("thickness-factor", settings.votes.thickness_factor, 1e-3, 1e3);
@@ -115,21 +114,17 @@ void check_values(const Options& options, const Raw& raw) {
   check_range("edge-length", settings.clean.edge_length, 0.0, 1e9);
   check_range("roi-border", options.roi_border, -1e6, 1e6);
   check_range("max-memory", options.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
-  if (raw.export_type != "ply" && raw.export_type != "obj")
-    fail("--export-type {}: must be one of ply, obj", raw.export_type);
 }
 
 void take_paths(const Raw& raw, Options& options) {
   const CommonOptions& common = options.parsed.common;
   options.scene = io::scene_files(raw.scene, raw.input, common);
-  const fs::path& scene = options.scene.scene;
   options.cloud = in_working_folder(common, raw.cloud);
   options.mesh = in_working_folder(common, raw.mesh);
-  options.output = output_in_working_folder(common, raw.output, "--output-file");
-  if (options.output.empty())
-    options.output = scene.parent_path() / (scene.stem().string() + "_mesh");
-  options.output =
-      io::mesh_file(options.output, raw.export_type, given(options.parsed, "export-type"));
+  options.output = io::mesh_file({options.scene.scene,
+                                  output_in_working_folder(common, raw.output, "--output-file"),
+                                  raw.export_type, given(options.parsed, "export-type"), "_mesh"});
+  refuse_control_characters(options.output, "--output-file");
 }
 
 // A tile has neighbours whose triangles must be the same.
@@ -187,7 +182,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   if (!options.parsed.run) return options;
   refuse_not_built(visible);
   refuse_not_built(hidden);
-  check_values(options, raw);
+  check_values(options);
   options.reconstruct.clean.cut_off = options.reconstruct.clean.spurious;
   take_paths(raw, options);
   take_tiles(raw, options);

@@ -16,7 +16,7 @@ struct Options {
   io::SceneFiles scene;
   std::filesystem::path cloud;   // empty: <scene>.ply if it exists, otherwise the scene's points
   std::filesystem::path mesh;    // mesh to clean; empty: reconstruct a mesh
-  std::filesystem::path output;  // .ply or .obj
+  std::filesystem::path output;  // .ply, .obj or .glb
   double roi_border = 0;
   std::uint64_t max_memory = 0;  // [MB of 10^6 bytes]; 0: 70 % of the free memory
   std::size_t tiles = 1;         // 1: the mesh is made in one piece

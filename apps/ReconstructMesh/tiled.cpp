@@ -10,10 +10,13 @@
 #include "base/hash.h"
 #include "base/log.h"
 #include "base/naming.h"
+#include "base/output_name.h"
+#include "base/parse_number.h"
 #include "base/version.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/lenses.h"
 #include "io/openmvs/point_source.h"
+#include "io/openmvs/scene_files.h"
 #include "mesh/tiled.h"
 #include "scene/point_cloud.h"
 
@@ -92,7 +95,7 @@ fs::path named_source(const Options& options) {
 
 fs::path cloud_file(const Options& options) {
   if (!options.cloud.empty()) return options.cloud;
-  const fs::path beside = fs::path(options.scene.scene).replace_extension(".ply");
+  const fs::path beside = io::cloud_beside(options.scene.scene);
   std::error_code error;
   return fs::exists(beside, error) ? beside : fs::path();
 }
@@ -113,8 +116,16 @@ Mesh join_tiles(const io::SceneWithCameras& scene, const Options& options) {
   });
 }
 
+// Runs with another number of tiles keep their intermediate files in folders of the same form.
 void remove_tiles(const Options& options) {
-  if (options.tiles > 1) mesh::remove_intermediate_files(run_of(options));
+  const std::string begin = without_known_extension(options.output).filename().string() + ".tiles";
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(options.output.parent_path(), ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!entry.is_directory(ignored) || !name.starts_with(begin)) continue;
+    const auto tiles = parse_number<std::size_t>(name.substr(begin.size()));
+    if (tiles && *tiles <= kMostTiles) mesh::remove_intermediate_files({*tiles, entry.path(), {}});
+  }
 }
 
 }  // namespace axial::apps

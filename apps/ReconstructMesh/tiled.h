@@ -20,7 +20,8 @@ void make_tile(const io::SceneWithCameras& scene, const Options& options);
 // Makes the tiles whose files are missing, and returns the mesh of all tiles.
 Mesh join_tiles(const io::SceneWithCameras& scene, const Options& options);
 
-// Removes the files of the tiles, if the options ask for tiles.
+// Removes the intermediate files of tiles beside the output, those of other numbers of tiles, too.
+// Other files in their folders stay.
 void remove_tiles(const Options& options);
 
 }  // namespace axial::apps

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <functional>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/naming.h"
+#include "base/output_lock.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/same_file.h"
@@ -13,9 +15,9 @@
 #include "densify/image_store.h"
 #include "densify/memory_limit.h"
 #include "densify/project.h"
-#include "io/cameras/geo_offset.h"
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/point_source.h"
+#include "io/openmvs/scene_files.h"
 #include "io/textured/textured_mesh.h"
 #include "options.h"
 #include "refine/state_file.h"
@@ -31,11 +33,10 @@ fs::path state_file(const Options& options) {
 }
 
 void check_outputs(const Options& options, const densify::Project& project) {
-  std::vector<fs::path> inputs{options.scene.input, densify::housing_file(options.scene),
-                               io::lenses_beside(options.scene.input),
-                               io::geo_offset_beside(options.scene.input)};
+  const densify::Settings& scene = options.scene;
+  std::vector<fs::path> inputs =
+      io::files_of_scene({scene.input, scene.working_folder, scene.housing}, project.scene);
   for (const fs::path& file : io::files_of_mesh(options.mesh)) inputs.push_back(file);
-  for (const SceneImage& image : project.scene.images) inputs.emplace_back(image.path);
   for (const densify::View& view : project.views) inputs.push_back(view.mask);
   for (const fs::path& output : {options.output, state_file(options)}) {
     require_not_an_input(output, inputs, "--output-file");
@@ -106,8 +107,48 @@ refine::State first_state(Mesh mesh, const Options& options, const std::string& 
   return state;
 }
 
-Mesh refine_mesh(Mesh mesh, const densify::Project& project, const Options& options) {
-  const fs::path file = state_file(options);
+// The file of the state. A state that this run wrote is removed if the run ends with an error: the
+// next run would meet the same error. It is kept if a file cannot be written, because the run can
+// continue when this is mended. The state of an earlier, killed run is kept, too.
+class StateOfRun {
+ public:
+  explicit StateOfRun(fs::path file) : file_(std::move(file)) {}
+  ~StateOfRun() {
+    if (is_removed_) remove();
+  }
+  StateOfRun(const StateOfRun&) = delete;
+  StateOfRun& operator=(const StateOfRun&) = delete;
+
+  void write(const refine::State& state, const std::string& fingerprint) {
+    writing([&] { refine::write_state(file_, state, fingerprint); });
+    is_removed_ = true;
+  }
+
+  // Calls `write`, which writes a file of the run.
+  void writing(const std::function<void()>& write) {
+    try {
+      write();
+    } catch (...) {
+      is_removed_ = false;
+      std::error_code ignored;
+      if (fs::exists(file_, ignored))
+        log_warning("{}: is kept: the same command continues from there", file_.string());
+      throw;
+    }
+  }
+
+  void remove() const {
+    std::error_code ignored;
+    fs::remove(file_, ignored);
+  }
+
+ private:
+  fs::path file_;
+  bool is_removed_ = false;
+};
+
+Mesh refine_mesh(Mesh mesh, const densify::Project& project, const Options& options,
+                 StateOfRun& of_run) {
   const std::string fingerprint = refine::fingerprint(
       mesh, options.refine, densify::fingerprint_of_views(project, options.scene));
   refine::State state = first_state(std::move(mesh), options, fingerprint);
@@ -126,7 +167,7 @@ Mesh refine_mesh(Mesh mesh, const densify::Project& project, const Options& opti
           return refine::Picture{image->grey, image->mask};
         },
         settings, console_progress("Refined"),
-        [&](const refine::State& now) { refine::write_state(file, now, fingerprint); });
+        [&](const refine::State& now) { of_run.write(now, fingerprint); });
   });
   const refine::Report& report = state.report;
   log_info("{} vertices measured in {} pairs of images; median displacement {:.3g} m",
@@ -146,14 +187,16 @@ int run(int argc, char** argv) {
   const ThreadLimit threads(options.parsed.common.max_threads);
   std::error_code ignored;
   fs::create_directories(options.output.parent_path(), ignored);
+  const OutputLock lock(options.output);
   const densify::Project project = densify::load_scene_and_headers(options.scene);
   check_outputs(options, project);
   Mesh mesh = read_mesh(options, project.frame);
-  mesh = refine_mesh(std::move(mesh), project, options);
+  StateOfRun state(state_file(options));
+  mesh = refine_mesh(std::move(mesh), project, options, state);
   return_freed_memory();
   mesh = naming(options.mesh, [&] { return mesh::clean(mesh, options.cleaning); });
-  write(options.output, mesh, project.frame);
-  fs::remove(state_file(options), ignored);
+  state.writing([&] { write(options.output, mesh, project.frame); });
+  state.remove();
   return 0;
 }
 

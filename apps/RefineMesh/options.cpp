@@ -6,10 +6,12 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/not_built.h"
+#include "base/output_name.h"
 #include "base/setting_names.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"
 #include "io/obj/mesh_file.h"
+#include "io/openmvs/scene_files.h"
 #include "io/openmvs/scene_options.h"
 
 namespace axial::apps {
@@ -50,7 +52,7 @@ void declare_io(OptionList& list, Raw& raw, Options& options) {
   list.add("input-file,i", &raw.input, "scene with cameras (.mvs)")
       .add("mesh-file,m", &raw.mesh, "mesh to refine: PLY, OBJ, GLB or glTF (<input>.ply)")
       .add("output-file,o", &raw.output, "mesh to write (<input>_refine.ply)")
-      .add_with_default("export-type", &raw.export_type, "format of the mesh: ply or obj")
+      .add_with_default("export-type", &raw.export_type, "format of the mesh: ply, obj or glb")
       .add_with_default("max-memory", &scene.max_memory,
                         "largest memory to use [MB] (0: 70 % of the free memory)")
       .add("mask-path", &raw.mask_path, "folder of masks (<image>.mask.png)")
@@ -115,13 +117,11 @@ void check_values(const Options& options, const Raw& raw) {
   check_range("decimate", raw.decimate, 0.0, 1.0);
   check_range("max-face-area", options.refine.max_face_area, 0.0, 1e9);
   check_range("scales", options.refine.scales, 1u, 16u);
-  check_range("scale-step", options.refine.scale_step, 0.1, 0.9);
+  check_range("scale-step", options.refine.scale_step, 0.1, 1.0);
   check_range("alternate-pair", raw.alternate_pair, 0u, 3u);
   check_range("regularity-weight", raw.regularity_weight, 0.0, 1e6);
   check_range("max-memory", options.scene.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
   io::check_bit_depth(options.scene.bit_depth, option_of("bit_depth"));
-  if (raw.export_type != "ply" && raw.export_type != "obj")
-    fail("--export-type {}: must be one of ply, obj", raw.export_type);
 }
 
 void take_cameras(const io::SceneFiles& files, densify::Settings& scene) {
@@ -142,13 +142,11 @@ void take_paths(const Raw& raw, Options& options) {
   if (!scene.mask_folder.empty() && !given(options.parsed, "ignore-mask-label"))
     scene.ignore_mask_label = 0;
   options.mesh = in_working_folder(common, raw.mesh);
-  if (options.mesh.empty())
-    options.mesh = std::filesystem::path(scene.input).replace_extension(".ply");
-  options.output = output_in_working_folder(common, raw.output, "--output-file");
-  if (options.output.empty())
-    options.output = scene.input.parent_path() / (scene.input.stem().string() + "_refine");
+  if (options.mesh.empty()) options.mesh = io::cloud_beside(scene.input);
   options.output =
-      io::mesh_file(options.output, raw.export_type, given(options.parsed, "export-type"));
+      io::mesh_file({scene.input, output_in_working_folder(common, raw.output, "--output-file"),
+                     raw.export_type, given(options.parsed, "export-type"), "_refine"});
+  refuse_control_characters(options.output, "--output-file");
   scene.output = std::filesystem::path(options.output).replace_extension(".mvs");
 }
 

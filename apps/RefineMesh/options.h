@@ -16,7 +16,7 @@ struct Options {
   ParsedOptions parsed;
   densify::Settings scene;       // settings of the scene, images, masks, cameras and memory
   std::filesystem::path mesh;    // .ply
-  std::filesystem::path output;  // .ply or .obj
+  std::filesystem::path output;  // .ply, .obj or .glb
   double decimate = 1;           // fraction of the faces that are kept before refining
   mesh::CleanOptions cleaning;   // for the refined mesh
   refine::Options refine;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/output_name.h"
 #include "base/setting_names.h"
 #include "base/unused_input.h"
 #include "base/version.h"
@@ -114,7 +115,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   options.model = in_working_folder(common, texts.input);
   options.lens = in_working_folder(common, texts.lens);
   options.housing = in_working_folder(common, texts.housing);
-  options.output = in_working_folder(common, texts.output);
+  options.output = folder_in_working_folder(common, texts.output, "--output-folder");
   check(options);
   return options;
 }

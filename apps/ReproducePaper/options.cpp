@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/output_name.h"
 #include "base/parse_number.h"
 #include "base/split.h"
 #include "base/version.h"
@@ -132,7 +133,7 @@ ProgramOptions describe(Arguments& a) {
 }
 
 std::filesystem::path results_folder(const Arguments& a, const CommonOptions& common) {
-  const std::filesystem::path folder = in_working_folder(common, a.output);
+  const std::filesystem::path folder = folder_in_working_folder(common, a.output, "--output");
   return a.quick ? folder / "quick" : folder;
 }
 

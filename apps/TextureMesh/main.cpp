@@ -8,13 +8,15 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/naming.h"
+#include "base/output_lock.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/same_file.h"
-#include "io/cameras/geo_offset.h"
-#include "io/cameras/lenses.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
+#include "io/openmvs/scene_files.h"
+#include "mesh/clean.h"
+#include "other_tiles.h"
 #include "settings.h"
 
 namespace axial::apps {
@@ -40,6 +42,21 @@ Mesh read_mesh(const Settings& settings, const LocalFrame& frame) {
   return mesh;
 }
 
+// The mesh with fewer faces, simplified as by ReconstructMesh.
+Mesh simplified(const Settings& settings, Mesh mesh) {
+  if (settings.decimate == 1) return mesh;
+  memory_of(settings).require(mesh::bytes_to_clean(mesh.vertices.size()),
+                              "decimating " + settings.mesh.string());
+  mesh::CleanOptions fewer;
+  fewer.decimate = settings.decimate;
+  fewer.close_holes = settings.close_holes;
+  fewer.spurious = 0;
+  fewer.spikes = false;
+  Mesh result = naming(settings.mesh, [&] { return mesh::clean(mesh, fewer); });
+  log_info("{} of {} faces were kept", result.faces.size(), mesh.faces.size());
+  return result;
+}
+
 // The output of a tile, with the extension .mvs. It is that of the run if there is one tile.
 fs::path output_of(const Settings& settings, std::size_t tile) {
   if (settings.texture.tiles == 1) return settings.output;
@@ -47,26 +64,26 @@ fs::path output_of(const Settings& settings, std::size_t tile) {
       .replace_extension(fmt::format(".tile{}-{}.mvs", tile + 1, settings.texture.tiles));
 }
 
-std::vector<fs::path> inputs_of(const Settings& settings, const texture::Photographs& photographs) {
-  const fs::path& scene = settings.scene.scene;
-  std::vector<fs::path> inputs = photographs.files();
-  inputs.insert(inputs.end(), {scene, io::housing_file(settings.scene), io::lenses_beside(scene),
-                               io::geo_offset_beside(scene), settings.photographs.views_file});
+using Paths = std::vector<fs::path>;
+
+Paths inputs_of(const Settings& settings, const Scene& scene,
+                const texture::Photographs& photographs) {
+  Paths inputs = io::files_of_scene(settings.scene, scene);
+  for (const fs::path& file : photographs.files()) inputs.push_back(file);
   for (const fs::path& file : io::files_of_mesh(settings.mesh)) inputs.push_back(file);
+  inputs.push_back(settings.photographs.views_file);
   return inputs;
 }
 
 // Error if a file of a tile's mesh with `textures` textures is an input.
-void keep_inputs(const Settings& settings, const std::vector<fs::path>& inputs, std::size_t tile,
+void keep_inputs(const Settings& settings, const Paths& inputs, std::size_t tile,
                  std::size_t textures) {
   for (const io::TexturedFormat format : settings.formats)
     require_no_inputs(io::textured_files(output_of(settings, tile), format, textures), inputs,
                       "--output-file");
 }
 
-void check_outputs(const Settings& settings, const std::vector<fs::path>& inputs) {
-  std::error_code ignored;
-  fs::create_directories(settings.output.parent_path(), ignored);
+void check_outputs(const Settings& settings, const Paths& inputs) {
   for (std::size_t tile = 0; tile < settings.texture.tiles; ++tile) {
     keep_inputs(settings, inputs, tile, 1);
     for (const io::TexturedFormat format : settings.formats)
@@ -119,11 +136,11 @@ texture::Options with_memory(const Settings& settings, const texture::Photograph
   return options;
 }
 
-void texture_and_write(const Settings& settings, Mesh mesh, const texture::Photographs& photographs,
-                       const LocalFrame& frame, const Eigen::Matrix3d& axes) {
+void texture_and_write(const Settings& settings, const Paths& inputs, Mesh mesh,
+                       const texture::Photographs& photographs, const LocalFrame& frame,
+                       const Eigen::Matrix3d& axes) {
   texture::Options options = with_memory(settings, photographs);
   options.axes = axes;
-  const std::vector<fs::path> inputs = inputs_of(settings, photographs);
   texture::Report facts;
   Written written;
   naming(settings.mesh, [&] {
@@ -149,19 +166,24 @@ int run(int argc, char** argv) {
   share_one_heap();
   const Settings& settings = options.settings;
   const ThreadLimit limit(options.parsed.common.max_threads);
+  std::error_code ignored;
+  fs::create_directories(settings.output.parent_path(), ignored);
+  const OutputLock lock(settings.output);
   if (const auto counts = io::count_mvs(settings.scene.scene))
     memory_of(settings).require(counts->reading_bytes(),
                                 "reading " + settings.scene.scene.string());
   io::SceneWithCameras scene = io::read_scene_with_cameras(settings.scene);
-  Mesh mesh = read_mesh(settings, scene.frame);
+  Mesh mesh = simplified(settings, read_mesh(settings, scene.frame));
   const texture::Photographs photographs(scene.scene, settings.scene.scene, settings.photographs);
-  check_outputs(settings, inputs_of(settings, photographs));
+  const Paths inputs = inputs_of(settings, scene.scene, photographs);
+  check_outputs(settings, inputs);
   const LocalFrame frame = scene.frame;
   const Eigen::Matrix3d axes =
       scene.scene.region ? scene.scene.region->rotation : Eigen::Matrix3d::Identity();
   scene = {};
   return_freed_memory();
-  texture_and_write(settings, std::move(mesh), photographs, frame, axes);
+  texture_and_write(settings, inputs, std::move(mesh), photographs, frame, axes);
+  warn_of_other_tiles(settings.output, settings.texture.tiles);
   return 0;
 }
 

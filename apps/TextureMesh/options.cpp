@@ -3,11 +3,14 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/not_built.h"
+#include "base/output_name.h"
 #include "base/setting_names.h"
 #include "base/split.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"
+#include "io/openmvs/scene_files.h"
 #include "io/openmvs/scene_options.h"
 #include "settings.h"
 
@@ -35,9 +38,7 @@ std::string option_of(std::string_view setting) {
 }
 
 std::vector<NotBuilt> not_built() {
-  return {{"decimate", "1", {"1", "1.0"}},
-          {"close-holes", "30", {"30"}},
-          {"virtual-face-images", "0", {"0"}},
+  return {{"virtual-face-images", "0", {"0"}},
           {"orthographic-image-resolution", "0", {"0"}},
           {"cuda-device", "-1", {"-1", "-2"}}};
 }
@@ -52,6 +53,10 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
       .add("output-file,o", &raw.output, "textured mesh to write (<input>_texture)")
       .add_with_default("export-type", &raw.export_type,
                         "formats to write, separated by commas: ply, obj, glb, gltf")
+      .add_with_default("decimate", &settings.decimate,
+                        "part of the faces to keep, from 0 to 1; the mesh is simplified first")
+      .add_with_default("close-holes", &settings.close_holes,
+                        "with --decimate below 1: close holes of at most this many edges (0: none)")
       .add_with_default("max-memory", &settings.max_memory,
                         "largest memory to use [MB] (0: 70 % of the free memory)")
       .add_with_default("tiles", &settings.texture.tiles,
@@ -100,6 +105,8 @@ void check_range(const char* name, T value, T low, T high) {
 }
 
 void check_values(const Raw& raw, const Settings& settings) {
+  check_range("decimate", settings.decimate, 1e-6, 1.0);
+  check_range("close-holes", settings.close_holes, std::size_t{0}, std::size_t{1000});
   check_range("tiles", settings.texture.tiles, std::size_t{1}, texture::kMostTiles);
   check_range("resolution-level", raw.resolution_level, 0u, 16u);
   check_range("min-resolution", settings.photographs.resolution.min, 1, 1 << 16);
@@ -127,32 +134,39 @@ std::vector<io::TexturedFormat> formats_of(const std::string& list) {
   return formats;
 }
 
-// The path with the extension ".mvs", which replaces that of a mesh.
-fs::path as_scene(fs::path path) {
-  const std::string extension = path.extension().string();
-  if (!extension.empty() && io::textured_format(extension.substr(1))) path.replace_extension();
-  if (path.extension() != ".mvs") path += ".mvs";
-  return path;
+// The formats of --export-type. If it is not given, the extension of the output decides, if it is
+// that of a mesh.
+std::vector<io::TexturedFormat> chosen_formats(const ParsedOptions& parsed, const Raw& raw) {
+  const std::string extension = known_extension(raw.output);
+  if (given(parsed, "export-type") || extension.empty() || extension == ".mvs")
+    return formats_of(raw.export_type);
+  return formats_of(extension.substr(1));
+}
+
+// The name of the output, and its formats.
+void take_output(const ParsedOptions& parsed, const Raw& raw, Settings& settings) {
+  const fs::path output = output_in_working_folder(parsed.common, raw.output, "--output-file");
+  refuse_other_format(output, "--output-file");
+  settings.formats = chosen_formats(parsed, raw);
+  const bool is_ply =
+      std::ranges::find(settings.formats, io::TexturedFormat::ply) != settings.formats.end();
+  settings.output = io::mesh_beside(settings.scene.scene, output, "_texture", is_ply) += ".mvs";
+  refuse_control_characters(settings.output, "--output-file");
 }
 
 void take_paths(const CommonOptions& common, const Raw& raw, Settings& settings) {
   const auto path = [&](const std::string& given) { return in_working_folder(common, given); };
   settings.scene = io::scene_files(raw.scene, raw.input, common);
   settings.mesh = path(raw.mesh);
-  if (settings.mesh.empty())
-    settings.mesh = fs::path(settings.scene.scene).replace_extension(".ply");
-  const fs::path& scene = settings.scene.scene;
-  settings.output = raw.output.empty()
-                        ? scene.parent_path() / (scene.stem().string() + "_texture.mvs")
-                        : as_scene(output_in_working_folder(common, raw.output, "--output-file"));
+  if (settings.mesh.empty()) settings.mesh = io::cloud_beside(settings.scene.scene);
   settings.photographs.views_file = path(raw.views_file);
   settings.photographs.mask_folder = path(raw.mask_path);
 }
 
 void convert(const Raw& raw, Options& options) {
   Settings& settings = options.settings;
-  settings.formats = formats_of(raw.export_type);
   take_paths(options.parsed.common, raw, settings);
+  take_output(options.parsed, raw, settings);
   settings.photographs.resolution.level = raw.resolution_level;
   settings.texture.name_of = settings.photographs.name_of = option_of;
   const bool masks_given = !raw.mask_path.empty() && !given(options.parsed, "ignore-mask-label");
@@ -164,6 +178,14 @@ void convert(const Raw& raw, Options& options) {
   for (unsigned k = 0; k < 3; ++k)
     settings.texture.empty_color[k] =
         static_cast<std::uint8_t>(raw.empty_color >> (8 * (2 - k)) & 255u);
+}
+
+// Warns of valid options that have no effect. OpenMVS's own scripts give --close-holes 0 without
+// --decimate, too.
+void warn_of_no_effect(const Options& options) {
+  const Settings& settings = options.settings;
+  if (settings.decimate == 1 && settings.close_holes != 0 && given(options.parsed, "close-holes"))
+    log_warning("--close-holes: without effect without --decimate");
 }
 
 }  // namespace
@@ -189,6 +211,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   refuse_not_built(hidden);
   check_values(raw, options.settings);
   convert(raw, options);
+  warn_of_no_effect(options);
   return options;
 }
 

@@ -20,6 +20,8 @@ struct Settings {
   std::filesystem::path mesh, output;  // the extension of the output is .mvs, as in OpenMVS
   std::vector<io::TexturedFormat> formats;
   texture::PhotographOptions photographs;
+  double decimate = 1;           // fraction of the faces that are kept before texturing
+  std::size_t close_holes = 30;  // with `decimate` below 1: CleanOptions::close_holes
   std::uint64_t max_memory = 0;  // [MB]; 0: 70 % of the free memory
   texture::Options texture;
 };

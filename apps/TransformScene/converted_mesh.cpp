@@ -2,7 +2,9 @@
 #include "converted_mesh.h"
 
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "evaluate/alignment.h"
+#include "io/obj/mesh_file.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
 
@@ -10,12 +12,25 @@ namespace axial::apps {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+io::TexturedFormat format_of(const fs::path& file) {
+  return io::textured_format(lower_extension(file).substr(1)).value_or(io::TexturedFormat::ply);
+}
+
+}  // namespace
+
 ConvertedMesh converted_mesh(const fs::path& input, const fs::path& output) {
   ConvertedMesh mesh{input, {output}, {}};
-  if (!io::is_textured_mesh(input)) return mesh;
+  if (!io::is_textured_mesh(input)) {
+    if (format_of(output) == io::TexturedFormat::gltf)
+      fail("{}: has no textures, and is not written as gltf: choose ply, obj or glb",
+           input.string());
+    return mesh;
+  }
   mesh.look = io::read_textured_mesh(input);
   mesh.look.mesh = {};  // its positions are read again in the frame of the scene
-  mesh.outputs = io::textured_files(output, io::TexturedFormat::ply, mesh.look.textures.size());
+  mesh.outputs = io::textured_files(output, format_of(output), mesh.look.textures.size());
   return mesh;
 }
 
@@ -26,10 +41,11 @@ void write_moved(const ConvertedMesh& mesh, const FrameMove& move,
   for (std::size_t i = 0; i < moved.vertices.size(); ++i)
     if (!moved.vertices[i].allFinite())
       fail("{}: vertex {} has no finite position after the transformation", mesh.input.string(), i);
-  if (mesh.look.textures.empty()) return io::write_mesh_ply(temporaries[0], moved, {move.to});
+  if (mesh.look.textures.empty()) return io::write_mesh(temporaries[0], moved, move.to);
   TexturedMesh textured = mesh.look;
   textured.mesh = std::move(moved);
-  io::write_textured_as(temporaries, mesh.outputs[0], textured, io::TexturedFormat::ply, move.to);
+  io::write_textured_as(temporaries, mesh.outputs[0], textured, format_of(mesh.outputs[0]),
+                        move.to);
 }
 
 }  // namespace axial::apps

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A mesh that is not a PLY file, and becomes one when it is moved.
+// A mesh that is written in another format than it is read, or that is not a PLY file, when it is
+// moved.
 #pragma once
 
 #include <filesystem>
@@ -13,13 +14,14 @@ namespace axial::apps {
 
 struct ConvertedMesh {
   std::filesystem::path input;
-  std::vector<std::filesystem::path> outputs;  // the PLY file and its textures
+  std::vector<std::filesystem::path> outputs;  // the mesh and its other files
   TexturedMesh look;                           // textures and coordinates; `mesh` is empty
 };
 
-// Reads the textures of `input` (OBJ, GLB or glTF), if it has any, and names the files of the moved
-// mesh: the PLY file `output`, and pictures beside it. Writes nothing. Errors as for
-// io::read_textured_mesh().
+// Reads the textures of `input` (PLY, OBJ, GLB or glTF), if it has any, and names the files of the
+// moved mesh: `output`, whose extension is that of its format (.ply, .obj, .glb or .gltf), and the
+// files beside it. Writes nothing. Errors as for io::read_textured_mesh(). In addition, an Error if
+// a mesh without textures shall become a .gltf.
 ConvertedMesh converted_mesh(const std::filesystem::path& input,
                              const std::filesystem::path& output);
 

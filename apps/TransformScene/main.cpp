@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "base/log.h"
+#include "base/output_name.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
 #include "converted_mesh.h"
@@ -23,9 +24,11 @@
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/moved_housing.h"
 #include "io/openmvs/mvs.h"
+#include "io/openmvs/scene_files.h"
 #include "io/ply/ply_transform.h"
 #include "io/textured/textured_mesh.h"
 #include "measure_volume.h"
+#include "moved_mesh.h"
 #include "options.h"
 #include "texture_copies.h"
 
@@ -35,13 +38,11 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path cloud_output(const Options& options) {
-  return fs::path(options.output).replace_extension(".ply");
+  return io::cloud_beside(options.output);
 }
 
 fs::path mesh_output(const Options& options) {
-  fs::path path = fs::path(options.output).replace_extension();
-  path += "_mesh.ply";
-  return path;
+  return without_known_extension(options.output) += "_mesh." + options.export_type;
 }
 
 fs::path folder_of_small_images(const Options& options) {
@@ -58,11 +59,16 @@ bool is_ply(const fs::path& path) {
   return lower_extension(path) == ".ply";
 }
 
+// Whether the mesh is copied with everything that its file holds.
+bool is_moved_as_ply(const Options& options) {
+  return is_ply(options.mesh) && options.export_type == "ply";
+}
+
 std::vector<MovedPly> moved_plys(const Options& options) {
   std::vector<MovedPly> plys;
   if (!options.moves()) return plys;
   if (!options.cloud.empty()) plys.push_back({"cloud", options.cloud, cloud_output(options)});
-  if (is_ply(options.mesh)) plys.push_back({"mesh", options.mesh, mesh_output(options)});
+  if (is_moved_as_ply(options)) plys.push_back({"mesh", options.mesh, mesh_output(options)});
   return plys;
 }
 
@@ -70,13 +76,13 @@ std::vector<MovedPly> moved_plys(const Options& options) {
 struct Files {
   std::vector<MovedPly> plys;
   std::vector<TextureCopy> textures;  // of the mesh
-  std::optional<ConvertedMesh> mesh;  // if it is not a PLY
+  std::optional<ConvertedMesh> mesh;  // if it is not a PLY, or is written in another format
 };
 
 Files files_of(const Options& options) {
   Files files{moved_plys(options), {}, {}};
   if (!options.moves() || options.mesh.empty()) return files;
-  if (is_ply(options.mesh))
+  if (is_moved_as_ply(options))
     files.textures = texture_copies(options.mesh, mesh_output(options));
   else
     files.mesh = converted_mesh(options.mesh, mesh_output(options));
@@ -95,6 +101,7 @@ std::vector<NamedOutput> outputs_of(const Options& options, const Files& files) 
       outputs.push_back({"--output-file", file});
   if (options.moves() && !options.transform_out.empty())
     outputs.push_back({"--transform-out", options.transform_out});
+  if (options.sample_mesh != 0) outputs.push_back({"--sample-mesh", samples_file(options)});
   for (const TextureCopy& texture : files.textures)
     if (texture.needed) outputs.push_back({"--mesh-file", texture.to});
   return outputs;
@@ -102,16 +109,9 @@ std::vector<NamedOutput> outputs_of(const Options& options, const Files& files) 
 
 // Called before the work. Makes the folders of the outputs.
 void check_outputs(const Options& options, const Files& files) {
-  const fs::path& scene = options.files.scene;
-  std::vector<fs::path> inputs{scene,
-                               io::housing_file(options.files),
-                               io::lenses_beside(scene),
-                               io::geo_offset_beside(scene),
-                               options.cloud,
-                               options.mesh,
-                               options.align,
-                               options.transform,
-                               options.positions};
+  std::vector<fs::path> inputs = io::files_of_scene(options.files);
+  inputs.insert(inputs.end(),
+                {options.cloud, options.mesh, options.align, options.transform, options.positions});
   for (const fs::path& file : io::files_of_mesh(options.mesh)) inputs.push_back(file);
   for (const TextureCopy& texture : files.textures) {
     inputs.push_back(texture.from);
@@ -127,6 +127,13 @@ void check_outputs(const Options& options, const Files& files) {
       fs::create_directories(output.path.parent_path(), ignored);
     require_writable(output.path);
   }
+}
+
+// Error if an output is a photograph, a mask or a depth map of the scene.
+void keep_images(const Options& options, const Files& files, const Scene& scene) {
+  const std::vector<fs::path> inputs = io::files_of_scene(options.files, scene);
+  for (const NamedOutput& output : outputs_of(options, files))
+    require_not_an_input(output.path, inputs, output.setting);
 }
 
 void apply(const Options& options, const FrameMove& move, io::SceneWithCameras& scene) {
@@ -177,6 +184,9 @@ std::vector<Output> all_outputs(const Options& options, const Files& files, cons
     outputs.push_back({options.transform_out, [&](const fs::path& file) {
                          write_atomically(file, evaluate::matrix_text(move.between_worlds()));
                        }});
+  if (options.sample_mesh != 0)
+    outputs.push_back(
+        {samples_file(options), [&](const fs::path& file) { write_samples(options, move, file); }});
   outputs.push_back({options.output, [&](const fs::path& file) {
                        io::write_mvs(file, scene, options.files.working_folder);
                      }});
@@ -209,6 +219,24 @@ void write_all(const Options& options, const Files& files, const FrameMove& move
            scene.scene.points.size());
 }
 
+// A cloud or a mesh that stays beside the new scene from an earlier scene of this name would seem
+// to belong to the new scene.
+void warn_of_older_files(const Options& options, const Files& files) {
+  if (!options.moves()) return;
+  std::vector<fs::path> older{cloud_output(options)};
+  for (const char* type : {".ply", ".obj", ".glb", ".gltf"})
+    older.push_back(with_extension(mesh_output(options), type));
+  for (const fs::path& file : older) {
+    const bool is_written =
+        std::ranges::find(files.plys, file, &MovedPly::output) != files.plys.end() ||
+        (files.mesh && files.mesh->outputs.front() == file);
+    std::error_code error;
+    if (!is_written && fs::exists(file, error))
+      log_warning("{}: is older than {} and was not moved with it: remove or rename it",
+                  file.string(), options.output.filename().string());
+  }
+}
+
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
@@ -216,17 +244,22 @@ int run(int argc, char** argv) {
   const Files files = files_of(options);
   check_outputs(options, files);
   io::SceneWithCameras scene = io::read_scene_with_cameras(options.files);
+  keep_images(options, files, scene.scene);
   const FrameMove move = find_move(options, scene);
   check_scale(options, scene, move.similarity);
   apply(options, move, scene);
   if (options.writes_scene()) require_writable_scene(options, scene.scene);
   if (options.compute_volume) measure_volume(options, scene.scene, move);
-  if (!options.writes_scene()) return 0;
+  if (!options.writes_scene()) {
+    if (options.sample_mesh != 0) write_samples(options, move, samples_file(options));
+    return 0;
+  }
   std::vector<SmallImage> images;
   if (options.max_resolution > 0)
     images =
         find_large_images(options.max_resolution, folder_of_small_images(options), scene.scene);
   write_all(options, files, move, images, scene);
+  warn_of_older_files(options, files);
   return 0;
 }
 

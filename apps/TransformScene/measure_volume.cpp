@@ -5,21 +5,12 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "evaluate/alignment.h"
 #include "evaluate/topology.h"
 #include "evaluate/volume.h"
-#include "io/openmvs/point_source.h"
+#include "moved_mesh.h"
 
 namespace axial::apps {
 namespace {
-
-// The mesh in move.to.
-Mesh moved_mesh(const Options& options, const FrameMove& move) {
-  Mesh mesh = io::read_mesh_of_scene(move.from, options.mesh);
-  if (mesh.faces.empty()) fail("the mesh has no faces");
-  evaluate::apply(move.similarity, mesh);
-  return mesh;
-}
 
 // The middle of the camera centres, coordinate by coordinate.
 Eigen::Vector3d middle_of_cameras(const Scene& scene) {

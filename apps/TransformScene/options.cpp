@@ -8,8 +8,10 @@
 #include "base/file_extension.h"
 #include "base/log.h"
 #include "base/not_built.h"
+#include "base/output_name.h"
 #include "base/version.h"
 #include "io/openmvs/scene_options.h"
+#include "io/textured/textured_mesh.h"
 
 namespace axial::apps {
 namespace {
@@ -23,12 +25,10 @@ struct Texts {
 };
 
 std::vector<NotBuilt> not_built() {
-  return {{"transfer-texture-file", "", {""}},
-          {"indices-file", "", {""}},
-          {"sample-mesh", "-300000", {"-300000"}}};
+  return {{"transfer-texture-file", "", {""}}, {"indices-file", "", {""}}};
 }
 
-void declare_files(OptionList& list, Texts& texts) {
+void declare_files(OptionList& list, Options& options, Texts& texts) {
   list.add("input-file,i", &texts.input, "scene to transform (.mvs)")
       .add("pointcloud-file,p", &texts.cloud,
            "PLY cloud in the scene's coordinates, transformed with it")
@@ -36,7 +36,9 @@ void declare_files(OptionList& list, Texts& texts) {
            "mesh in the scene's coordinates, transformed with it: PLY, OBJ, GLB or glTF")
       .add("output-file,o", &texts.output,
            "scene to write (<input>_transform.mvs); the cloud and the mesh are written beside it, "
-           "as .ply and _mesh.ply");
+           "as .ply and _mesh.ply")
+      .add_with_default("export-type", &options.export_type,
+                        "format of the mesh that is written: ply, obj, glb or gltf");
   io::declare_scene_options(list, texts.cameras);
 }
 
@@ -68,6 +70,9 @@ void declare_other_work(OptionList& list, Options& options) {
       .add_with_default("up-axis", &options.up_axis,
                         "0, 1, 2: the axis from which the ground plane's normal is at most 45 "
                         "degrees away; the cameras are above the plane")
+      .add("sample-mesh", &options.sample_mesh,
+           "write random points on the mesh, after the transformation, to <output>_samples.ply: "
+           "below 0, minus the number of points; above 0, points for each square unit of area")
       .add_with_default("max-resolution", &options.max_resolution,
                         "shrink images whose longest side is longer [px], into the folder "
                         "images<N> beside the output (0: no limit)");
@@ -83,20 +88,32 @@ void set_paths(const Texts& texts, Options& options) {
   options.align = path(texts.align);
   options.transform = path(texts.transform);
   options.positions = path(texts.positions);
-  options.transform_out = path(texts.transform_out);
-  options.output = path(texts.output);
-  if (!options.output.empty()) return;
-  options.output = options.files.scene.parent_path() / options.files.scene.stem();
-  options.output += "_transform.mvs";
+  const CommonOptions& common = options.parsed.common;
+  options.transform_out = output_in_working_folder(common, texts.transform_out, "--transform-out");
+  options.output = with_extension(
+      output_or(common, texts.output, without_known_extension(options.files.scene) += "_transform",
+                "--output-file"),
+      ".mvs");
+}
+
+void check_mesh_outputs(Options& options) {
+  const std::string given_type = options.export_type;
+  options.export_type = lower_case(given_type);
+  if (!io::textured_format(options.export_type))
+    fail("--export-type {}: must be one of ply, obj, glb, gltf", given_type);
+  if (!std::isfinite(options.sample_mesh))
+    fail("--sample-mesh is {}: must be a number", options.sample_mesh);
+  if (options.sample_mesh != 0 && options.mesh.empty())
+    fail("--sample-mesh needs --mesh-file: the mesh on which points are written");
 }
 
 void check(const Options& options) {
   const int ways = !options.align.empty() + !options.transform.empty() + !options.positions.empty();
   if (ways > 1) fail("--align-file, --transform-file, --positions: only one can be given");
-  if (!options.writes_scene() && !options.compute_volume)
+  if (!options.writes_scene() && !options.compute_volume && options.sample_mesh == 0)
     fail(
-        "nothing to do: give --align-file, --transform-file, --positions, --max-resolution or "
-        "--compute-volume 1");
+        "nothing to do: give --align-file, --transform-file, --positions, --max-resolution, "
+        "--sample-mesh or --compute-volume 1");
   if (options.compute_volume && options.mesh.empty())
     fail("--compute-volume needs --mesh-file: the mesh whose volume is measured");
   if (!options.cloud.empty() && options.cloud.extension() != ".ply")
@@ -106,8 +123,6 @@ void check(const Options& options) {
       kind != ".gltf")
     fail("{}: not built yet: meshes are read from PLY, OBJ, GLB and glTF files",
          options.mesh.string());
-  if (options.output.extension() != ".mvs")
-    fail("--output-file {}: must end in .mvs", options.output.string());
   if (options.up_axis < 0 || options.up_axis > 2)
     fail("--up-axis is {}: must be 0, 1 or 2", options.up_axis);
   if (!std::isfinite(options.plane_threshold))
@@ -123,6 +138,8 @@ void warn_of_no_effect(const Options& options) {
        "without --align-file or --positions");
   warn(!options.moves(), "scale-ports", "without a transformation");
   warn(!options.moves(), "transform-out", "without a transformation");
+  warn(!options.moves() || options.mesh.empty(), "export-type",
+       "without a mesh that is transformed");
   for (const char* name : {"plane-threshold", "up-axis"})
     warn(!options.compute_volume, name, "without --compute-volume 1");
 }
@@ -138,7 +155,7 @@ Options parse_command_line(int argc, const char* const* argv) {
                          {},
                          {}};
   program.version = version_line(program.name);
-  declare_files(program.visible, texts);
+  declare_files(program.visible, options, texts);
   declare_moves(program.visible, options, texts);
   declare_other_work(program.visible, options);
   std::vector<NotBuilt> refused = not_built();
@@ -148,6 +165,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   refuse_not_built(refused);
   set_paths(texts, options);
   check(options);
+  check_mesh_outputs(options);
   warn_of_no_effect(options);
   return options;
 }

@@ -19,9 +19,11 @@ struct Options {
   bool scale_ports = false;  // the lengths of ports change with the scale
   std::filesystem::path transform_out;
   bool compute_volume = false;
-  double plane_threshold = 0;   // GroundOptions::threshold [m]; negative: no ground plane
-  int up_axis = 2;              // GroundOptions::up_axis
-  unsigned max_resolution = 0;  // longest side of an image [px]; 0: images stay as they are
+  double plane_threshold = 0;       // GroundOptions::threshold [m]; negative: no ground plane
+  int up_axis = 2;                  // GroundOptions::up_axis
+  double sample_mesh = 0;           // see write_samples(); 0: no samples
+  std::string export_type = "ply";  // of the moved mesh: ply, obj, glb or gltf
+  unsigned max_resolution = 0;      // longest side of an image [px]; 0: images stay as they are
 
   bool moves() const { return !align.empty() || !transform.empty() || !positions.empty(); }
   bool writes_scene() const { return moves() || max_resolution > 0; }

@@ -49,6 +49,27 @@ cv::Size reduced(cv::Size size, int longest) {
   return working_size(size.width, size.height, {0, 1, longest});
 }
 
+void read_cloud(const Options& options, Contents& contents) {
+  view::CloudSample sample(options.max_points);
+  constexpr std::size_t kPortion = 1 << 18;
+  io::read_cloud_of_scene_in_portions(
+      contents.scene.frame, options.cloud, kPortion,
+      [&](const PointCloud& portion, std::size_t all) { sample.add(portion, all); });
+  contents.all_points = sample.added();
+  contents.cloud = sample.take();
+  if (contents.cloud.size() == 0) fail("{}: the cloud has no points", options.cloud.string());
+  log_info("{}: {} of {} points are shown", options.cloud.string(), contents.cloud.size(),
+           contents.all_points);
+}
+
+// The corners of the mesh, for a first view without a cloud.
+PointCloud corners_of_mesh(const Contents& contents) {
+  PointCloud corners;
+  corners.positions =
+      contents.textured ? contents.textured->mesh.vertices : contents.mesh->vertices;
+  return corners;
+}
+
 void read_mesh(const Options& options, Contents& contents) {
   if (options.mesh.empty()) return;
   const LocalFrame& frame = contents.scene.frame;
@@ -86,6 +107,7 @@ std::vector<std::vector<Eigen::Vector3f>> points_to_check(const Contents& conten
 }
 
 Json write_cloud(const Contents& contents, const Options& options, const fs::path& staging) {
+  if (options.cloud.empty()) return Json::array();
   const std::vector<std::uint32_t> cameras = camera_numbers(contents.scene.scene);
   const view::PointErrors errors{contents.distances, view::error_step(contents.distances)};
   DataFiles files(staging, "cloud");
@@ -184,8 +206,8 @@ void add_survey(const Contents& contents, const Options& options, const fs::path
 }
 
 Json files_of(const Options& options) {
-  Json files{{"scene", options.scene.scene.filename().string()},
-             {"cloud", options.cloud.filename().string()}};
+  Json files{{"scene", options.scene.scene.filename().string()}};
+  if (!options.cloud.empty()) files["cloud"] = options.cloud.filename().string();
   if (!options.mesh.empty()) files["mesh"] = options.mesh.filename().string();
   return files;
 }
@@ -197,16 +219,7 @@ Contents read_contents(const Options& options) {
   contents.scene = io::read_scene_with_cameras(options.scene);
   if (std::ranges::none_of(contents.scene.scene.images, &SceneImage::calibrated))
     fail("{}: has no calibrated image", options.scene.scene.string());
-  view::CloudSample sample(options.max_points);
-  constexpr std::size_t kPortion = 1 << 18;
-  io::read_cloud_of_scene_in_portions(
-      contents.scene.frame, options.cloud, kPortion,
-      [&](const PointCloud& portion, std::size_t all) { sample.add(portion, all); });
-  contents.all_points = sample.added();
-  contents.cloud = sample.take();
-  if (contents.cloud.size() == 0) fail("{}: the cloud has no points", options.cloud.string());
-  log_info("{}: {} of {} points are shown", options.cloud.string(), contents.cloud.size(),
-           contents.all_points);
+  if (!options.cloud.empty()) read_cloud(options, contents);
   read_mesh(options, contents);
   if (!options.truth.empty())
     contents.distances = distances_to_truth(contents.scene.frame, contents.cloud, options.truth);
@@ -218,7 +231,9 @@ void write_contents(const Contents& contents, const Options& options, const fs::
   make_folder(staging / "photographs");
   const io::SceneWithCameras& scene = contents.scene;
   const view::FirstView first =
-      view::first_view(contents.cloud, scene.scene.images, !scene.frame.is_world());
+      options.cloud.empty()
+          ? view::first_view(corners_of_mesh(contents), scene.scene.images, !scene.frame.is_world())
+          : view::first_view(contents.cloud, scene.scene.images, !scene.frame.is_world());
   Json data{{"program", version_line("ViewScene")}, {"files", files_of(options)},
             {"origin", list(scene.frame.origin)},   {"metric", scene.housing.has_value()},
             {"points", contents.cloud.size()},      {"all_points", contents.all_points}};

@@ -14,6 +14,7 @@
 #include "base/parallel.h"
 #include "io/images/image.h"
 #include "io/openmvs/dmap.h"
+#include "io/openmvs/scene_files.h"
 #include "scene/resolution.h"
 #include "view/color_scale.h"
 #include "view/map_pictures.h"
@@ -28,7 +29,7 @@ constexpr int kDepthQuality = 80;                        // of JPEG files
 constexpr std::uint64_t kBytesInFlight = 2'000'000'000;  // of the maps that are read at a time
 
 fs::path map_of(const SceneImage& image, const fs::path& folder) {
-  return folder / fmt::format("depth{:04}.dmap", image.id);
+  return folder / io::depth_map_name(image.id);
 }
 
 void check_photograph(const DepthMap& map, const SceneImage& image, const fs::path& file) {

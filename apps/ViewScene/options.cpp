@@ -4,8 +4,10 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/output_name.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"
+#include "io/openmvs/scene_files.h"
 #include "io/openmvs/scene_options.h"
 
 namespace axial::apps {
@@ -45,7 +47,8 @@ void take_survey(const Raw& raw, const CommonOptions& common, Options& options) 
 
 void declare(OptionList& list, Raw& raw, Options& options) {
   list.add("input-file,i", &raw.input, "scene with cameras and images (.mvs)")
-      .add("pointcloud-file,p", &raw.cloud, "cloud to show, PLY (<input>.ply)")
+      .add("pointcloud-file,p", &raw.cloud,
+           "cloud to show, PLY (<input>.ply; not needed with a mesh)")
       .add("mesh-file,m", &raw.mesh, "mesh to show, with or without textures: PLY, OBJ, GLB, glTF")
       .add("report", &raw.report, "folder to write; a browser shows its index.html")
       .add("sfm-model", &raw.sfm_model,
@@ -61,6 +64,15 @@ void declare(OptionList& list, Raw& raw, Options& options) {
   declare_survey(list, raw, options);
   io::declare_bit_depth(list, options.bit_depth);
   io::declare_scene_options(list, raw.scene);
+}
+
+// The cloud that is given, or the one beside the scene. Without it, a mesh can be shown alone.
+fs::path cloud_to_show(const Raw& raw, const Options& options) {
+  if (!raw.cloud.empty()) return in_working_folder(options.parsed.common, raw.cloud);
+  const fs::path beside = io::cloud_beside(options.scene.scene);
+  std::error_code error;
+  const bool alone = !options.mesh.empty() && !fs::exists(beside, error);
+  return alone ? fs::path() : beside;
 }
 
 template <class T>
@@ -91,13 +103,15 @@ Options parse_command_line(int argc, const char* const* argv) {
     check_range("depth-map-size", options.depth_maps.longest_side, 16, 1 << 14);
   io::check_bit_depth(options.bit_depth, "--bit-depth");
   options.scene = io::scene_files(raw.scene, raw.input, common);
-  options.cloud = raw.cloud.empty() ? fs::path(options.scene.scene).replace_extension(".ply")
-                                    : in_working_folder(common, raw.cloud);
   options.mesh = in_working_folder(common, raw.mesh);
+  options.cloud = cloud_to_show(raw, options);
+  if (options.cloud.empty() && !raw.truth.empty())
+    fail("--truth {}: its distances are those of a cloud (-p), but only a mesh is shown",
+         raw.truth);
   take_survey(raw, common, options);
   options.sfm_model = in_working_folder(common, raw.sfm_model);
   options.truth = in_working_folder(common, raw.truth);
-  options.report = in_working_folder(common, raw.report).lexically_normal();
+  options.report = folder_in_working_folder(common, raw.report, "--report");
   if (!options.report.has_filename()) options.report = options.report.parent_path();
   return options;
 }

@@ -14,7 +14,7 @@ namespace axial::apps {
 struct Options {
   ParsedOptions parsed;
   io::SceneFiles scene;
-  std::filesystem::path cloud, mesh;  // an empty `mesh`: none
+  std::filesystem::path cloud, mesh;  // empty: none
   std::filesystem::path report;       // the folder to write
   MapOptions maps;
   DepthMapOptions depth_maps;

@@ -148,7 +148,7 @@ class Mesh(Scene):
         write(cloud, good)
         self.refused(folder, "not built yet", "--split-max-area", "3")
         self.refused(folder, "--decimate 1.5", "--decimate", "1.5")
-        self.refused(folder, "--export-type glb", "--export-type", "glb")
+        self.refused(folder, "--export-type stl", "--export-type", "stl")
         self.refused(folder, "no.ply", "-p", "no.ply")
         self.refused(folder, "--max-memory", "--max-memory", "1")
         self.refused(folder, "housing", "--refractive")

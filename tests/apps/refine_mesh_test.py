@@ -128,7 +128,7 @@ class Refined(Scene):
             write(os.path.join(folder, "wrong.ply"), good[:size])
             self.refuses("wrong.ply", *command)
         self.refuses("absent.ply", *command[:-1], "absent.ply")
-        self.refuses("--scale-step 1", *command, "--scale-step", "1")
+        self.refuses("--scale-step 1.1", *command, "--scale-step", "1.1")
         self.refuses("--refractive", *command, "--refractive", "--camera-model", "pinhole")
         self.refuses("housing file not found", *command, "--refractive")
         self.refuses("--output-file", *command, "-o", "wrong.ply")

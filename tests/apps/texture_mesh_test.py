@@ -241,8 +241,8 @@ class WrongInput(TextureTest):
     def test_options_out_of_range(self):
         for option, value, expected in (
                 ("--export-type", "stl", "must be one or more of ply, obj, glb, gltf"),
-                ("--decimate", "0.5", "--decimate 0.5: not built yet"),
-                ("--close-holes", "10", "--close-holes 10: not built yet"),
+                ("--decimate", "0", "must be from 1e-06 to 1"),
+                ("--close-holes", "1001", "must be from 0 to 1000"),
                 ("--virtual-face-images", "3", "--virtual-face-images 3: not built yet"),
                 ("--orthographic-image-resolution", "100", "not built yet"),
                 ("--outlier-threshold", "2", "must be from 0 to"),

@@ -127,7 +127,7 @@ class WrongInput(Transform):
         self.refused("--compute-volume needs --mesh-file", "--compute-volume", 1)
         self.refused("--transfer-texture-file x.ply: not built yet", *t, "--transfer-texture-file",
                      "x.ply")
-        self.refused("--sample-mesh 5: not built yet", *t, "--sample-mesh", 5)
+        self.refused("--sample-mesh needs --mesh-file", *t, "--sample-mesh", 5)
         self.refused("x.stl: not built yet", *t, "-m", "x.stl")
         self.refused("x.obj: not built yet", *t, "-p", "x.obj")
         self.refused("x.glb", *t, "-m", "x.glb")

@@ -279,6 +279,23 @@ class ViewPage(ViewCase):
         self.assertAlmostEqual(volumes["rugosity"], 1, delta=1e-5)
         self.assertIn("0.00288", page.value("axial.paths.csv()"))
 
+    def test_without_a_cloud_the_mesh_is_shown_alone(self):
+        mesh = self.path("work", "mesh.ply")
+        write(mesh, mesh_ply(*wall(z=1.1)))
+        alone = ("ViewScene", "-i", self.scene, "-w", self.work, "--report", self.report)
+        self.refuses("scene.ply", *alone)  # nothing to show
+        self.refuses("--truth", *alone, "-m", mesh, "--truth", mesh)
+        self.succeeds(*alone, "-m", mesh)
+        page = self.reopened("globalThis.axial && axial.ready")
+        self.addCleanup(page.close)
+        self.assertEqual(page.value("document.getElementById('status').textContent"), "288 faces")
+        self.assertGreater(page.value("axial.view.drawnShare()"), 0.1)
+        page.click_on("[data-tab=point]")
+        page.click(*self.place_of(page, (0.05, 0.03, 1.1)))
+        for value, expected in zip(page.value("axial.state.picked"), (0.05, 0.03, 1.1)):
+            self.assertAlmostEqual(value, expected, delta=0.003)
+        self.assertEqual(page.errors, [])
+
     def test_a_narrow_page_works_with_touch_and_keyboard(self):
         page = self.opened(width=390, height=844, touch=True)
         self.assertLessEqual(page.value("document.documentElement.scrollWidth"), 390)

@@ -46,17 +46,25 @@ function about(scene) {
                 ["1, 2, …", "choose a tab"], ["R", "reset the view"]];
   byId("about").replaceChildren(
     make("h2", {}, "Reconstruction"),
-    table([["Scene", scene.files.scene], ["Cloud", scene.files.cloud],
+    table([["Scene", scene.files.scene],
+           ...scene.files.cloud ? [["Cloud", scene.files.cloud]] : [],
            ...scene.files.mesh ? [["Mesh", scene.files.mesh]] : [],
-           ["Points", `${count(scene.points)} of ${count(scene.all_points)}`],
+           ...scene.files.cloud ? [["Points", `${count(scene.points)} of ${count(scene.all_points)}`]] : [],
            ["Photographs", scene.cameras.length],
            ["Unit", scene.metric ? "metre" : "not known (no port)"],
            ["Written by", scene.program]]),
     make("h2", {}, "Projection"),
     make("p", { id: "projection" }, checks ? "The pixels of this page agree with AxialMVS to " +
       `${error.toExponential(1)} px (${count(checks)} points).` :
-      "Not checked: the cloud has no views."),
+      `Not checked: ${scene.files.cloud ? "the cloud has no views" : "there is no cloud"}.`),
     make("h2", {}, "Keys"), table(keys));
+}
+
+// Without a cloud there are no points to show, to colour or to enlarge; the mesh is picked.
+function showMeshAlone(view) {
+  view.cloud.group.visible = false;
+  view.mesh.group.visible = true;
+  for (const id of ["show-points", "colours", "larger", "smaller"]) byId(id).hidden = true;
 }
 
 function start(scene) {
@@ -74,6 +82,7 @@ function start(scene) {
                                     paths ? paths.all : [], state.keyboard, view.size);
   view = new View(scene, pick, overlay);
   paths = new Paths(scene, view.mesh, () => view.drawn());
+  if (!scene.files.cloud) showMeshAlone(view);
   toggle("show-points", view.cloud.group, view);
   toggle("show-cameras", view.cameras.group, view);
   toggle("show-mesh", view.mesh.group, view);
@@ -139,7 +148,9 @@ async function load(scene, { view, paths, map, colours }) {
     view.move();
   }
   await map?.load();
-  byId("status").textContent = `${count(view.cloud.points)} points`;
+  const faces = scene.mesh ? scene.mesh.parts.reduce((sum, part) => sum + part.faces, 0) : 0;
+  byId("status").textContent = scene.files.cloud ? `${count(view.cloud.points)} points`
+                                                 : `${count(faces)} faces`;
 }
 
 function report(error) {

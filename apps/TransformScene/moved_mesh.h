@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The mesh after the transformation, for volumes and for points on it.
+#pragma once
+
+#include <filesystem>
+
+#include "options.h"
+#include "scene/mesh.h"
+#include "scene/moved_scene.h"
+
+namespace axial::apps {
+
+// Returns Options::mesh in move.to. Error that names the file for a malformed file and for a mesh
+// without faces.
+Mesh moved_mesh(const Options& options, const FrameMove& move);
+
+// The file of the points on the mesh: <output without extension>_samples.ply.
+std::filesystem::path samples_file(const Options& options);
+
+// Writes random points on the moved mesh, uniform by area, to `file`. Options::sample_mesh below 0:
+// minus the number of points; above 0: points for each square unit of area. Error that names the
+// option for more than 10^8 points, and Errors of moved_mesh() and evaluate::sample_surface().
+void write_samples(const Options& options, const FrameMove& move,
+                   const std::filesystem::path& file);
+
+}  // namespace axial::apps
