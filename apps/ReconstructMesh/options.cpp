@@ -26,7 +26,9 @@ struct Raw {
 
 constexpr SettingName kOptions[] = {{"max_memory", "--max-memory"},
                                     {"merge.min_distance", "--min-point-distance"},
-                                    {"tiles", "--tiles"}};
+                                    {"output", "--output-file"},
+                                    {"tiles", "--tiles"},
+                                    {"type", "--export-type"}};
 
 std::string option_of(std::string_view setting) {
   return name_in(kOptions, setting);
@@ -121,9 +123,9 @@ void take_paths(const Raw& raw, Options& options) {
   options.scene = io::scene_files(raw.scene, raw.input, common);
   options.cloud = in_working_folder(common, raw.cloud);
   options.mesh = in_working_folder(common, raw.mesh);
-  options.output = io::mesh_file({options.scene.scene,
-                                  output_in_working_folder(common, raw.output, "--output-file"),
-                                  raw.export_type, given(options.parsed, "export-type"), "_mesh"});
+  options.output = io::mesh_file(
+      {options.scene.scene, output_in_working_folder(common, raw.output, "--output-file"),
+       raw.export_type, given(options.parsed, "export-type"), "_mesh", option_of});
   refuse_control_characters(options.output, "--output-file");
 }
 

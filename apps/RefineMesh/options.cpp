@@ -41,7 +41,9 @@ constexpr SettingName kOptions[] = {{"allow_missing", "--allow-missing"},
                                     {"ignore_mask_label", "--ignore-mask-label"},
                                     {"mask_folder", "--mask-path"},
                                     {"max_memory", "--max-memory"},
-                                    {"refractive", "--refractive"}};
+                                    {"output", "--output-file"},
+                                    {"refractive", "--refractive"},
+                                    {"type", "--export-type"}};
 
 std::string option_of(std::string_view setting) {
   return name_in(kOptions, setting);
@@ -145,7 +147,7 @@ void take_paths(const Raw& raw, Options& options) {
   if (options.mesh.empty()) options.mesh = io::cloud_beside(scene.input);
   options.output =
       io::mesh_file({scene.input, output_in_working_folder(common, raw.output, "--output-file"),
-                     raw.export_type, given(options.parsed, "export-type"), "_refine"});
+                     raw.export_type, given(options.parsed, "export-type"), "_refine", option_of});
   refuse_control_characters(options.output, "--output-file");
   scene.output = std::filesystem::path(options.output).replace_extension(".mvs");
 }

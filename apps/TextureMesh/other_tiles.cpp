@@ -45,7 +45,7 @@ void warn_of_other_tiles(const fs::path& output, std::size_t tiles) {
   log_warning(
       "{}{}: of another number of tiles, not renewed by this run: remove what is not needed",
       (output.parent_path() / others.front()).string(),
-      others.size() == 1 ? "" : fmt::format(" and {} more files", others.size() - 1));
+      others.size() == 1 ? "" : fmt::format(" and {} more", others.size() - 1));
 }
 
 }  // namespace axial::apps

@@ -322,13 +322,16 @@ class Stale(Wall):
         self.assertNotIn("is older than", said)
 
     def test_tiles_of_another_number_are_named(self):
-        self.succeeds(*self.command("TextureMesh", "--tiles", "3"))
-        for tiles, others in (("2", 3), ("1", 5)):
+        for name in ("scene_texture.tile1-9.ply", "scene_texture.tile2-9.glb",
+                     "scene_texture.tile2-90.png", "scene_texture.tilex-9.ply", "new.tile1-9.ply"):
+            write(self.path("work", name), "old")
+        # The wall is one part of a photograph, so that one of two tiles has all faces.
+        for tiles, named in (("2", "tile1-9.ply and 1 more: "), ("1", "tile1-2.ply and 2 more: ")):
             said = self.succeeds(*self.command("TextureMesh", "--tiles", tiles)).stdout
-            self.assertIn(f"scene_texture.tile1-{2 if tiles == '1' else 3}.ply and {others - 1} more",
-                          said)
+            self.assertIn(f"warning: {self.work}/scene_texture.{named}", said)
         self.assertNotIn("another number", self.succeeds(
-            *self.command("TextureMesh", "-o", "new", "--tiles", "2")).stdout)
+            *self.command("TextureMesh", "-o", "other", "--tiles", "2")).stdout)
+        self.assertEqual(self.at("scene_texture.tile1-9.ply"), b"old")
 
     def test_intermediate_tiles_of_a_mesh_are_removed(self):
         for tiles in ("4", "9"):

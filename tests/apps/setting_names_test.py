@@ -12,8 +12,8 @@ from programs import main
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # Files that parse or declare the options that they name.
-DECLARE_OPTIONS = {"libs/base/not_built.cpp", "libs/base/program.cpp", "libs/base/unused_input.cpp",
-                   "libs/io/openmvs/scene_options.cpp"}
+DECLARE_OPTIONS = {"libs/base/newer_options.cpp", "libs/base/not_built.cpp", "libs/base/program.cpp",
+                   "libs/base/unused_input.cpp", "libs/io/openmvs/scene_options.cpp"}
 COMMAND_LINES = "libs/experiments/"  # puts together command lines of programs
 
 # The program's table of each library, and the functions of the library that ask for names.

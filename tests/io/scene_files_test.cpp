@@ -62,7 +62,7 @@ TEST(MeshFile, TheTypeOrElseTheExtensionChoosesTheFormat) {
   EXPECT_EQ(file("scan.v2", "OBJ", true), "scan.v2.obj");
   EXPECT_EQ(file("", "ply", false), "s_mesh.ply");
   EXPECT_THAT(test::error_of([&] { file("m.gltf", "ply", false); }), HasSubstr("m.gltf"));
-  EXPECT_THAT(test::error_of([&] { file("m", "stl", true); }), HasSubstr("--export-type stl"));
+  EXPECT_THAT(test::error_of([&] { file("m", "stl", true); }), HasSubstr("type stl"));
   EXPECT_THAT(test::error_of([&] { file("m.off", "ply", false); }), HasSubstr(".off"));
 }
 

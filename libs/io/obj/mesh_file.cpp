@@ -19,18 +19,19 @@ bool is_written(const std::string& type) {
 // The type that the user gave, or that the extension of the output asks for.
 std::string type_of(const MeshFile& file) {
   const std::string given = lower_case(file.type);
-  if (!is_written(given)) fail("--export-type {}: must be one of ply, obj, glb", file.type);
+  if (!is_written(given))
+    fail("{} {}: must be one of ply, obj, glb", file.name_of("type"), file.type);
   const std::string extension = known_extension(file.output);
   if (file.type_given || extension.empty() || extension == ".mvs") return given;
   if (!is_written(extension.substr(1)))
-    fail("--output-file {}: must end in .ply, .obj or .glb", file.output.string());
+    fail("{} {}: must end in .ply, .obj or .glb", file.name_of("output"), file.output.string());
   return extension.substr(1);
 }
 
 }  // namespace
 
 std::filesystem::path mesh_file(const MeshFile& file) {
-  refuse_other_format(file.output, "--output-file");
+  refuse_other_format(file.output, file.name_of("output"));
   const std::string type = type_of(file);
   return mesh_beside(file.scene, file.output, file.ending, type == "ply") += "." + type;
 }

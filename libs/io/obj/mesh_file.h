@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "base/setting_names.h"
 #include "scene/local_frame.h"
 #include "scene/mesh.h"
 
@@ -12,17 +13,18 @@ namespace axial::io {
 
 // The path of the mesh file to write.
 struct MeshFile {
-  std::filesystem::path scene;   // the scene from which the mesh is made
-  std::filesystem::path output;  // the value of the option -o, as a path; empty: not given
-  std::string type;              // the value of the option --export-type
-  bool type_given = false;       // the user gave the type
-  std::string ending;            // of the default name: "_mesh" for <scene>_mesh.ply
+  std::filesystem::path scene;      // the scene from which the mesh is made
+  std::filesystem::path output;     // the value of the user; empty: not given
+  std::string type;                 // the format
+  bool type_given = false;          // the user gave the type
+  std::string ending;               // of the default name: "_mesh" for <scene>_mesh.ply
+  SettingNames name_of = own_name;  // names "output" and "type" in errors
 };
 
 // Returns the path of the mesh file. The type is "ply", "obj" or "glb", in upper or lower case. If
 // the user did not give the type, the extension of `output` decides, if it is .obj or .glb. The
 // rules for the name are those of mesh_beside() (io/openmvs/scene_files.h). Error that names the
-// option for another type, and for an output with the extension of a format that is not written.
+// setting for another type, and for an output with the extension of a format that is not written.
 std::filesystem::path mesh_file(const MeshFile& file);
 
 // Writes the mesh in the format of the extension of `path`: OBJ, GLB, otherwise PLY. `frame` is the

@@ -51,8 +51,8 @@ std::string json_of(const Mesh& mesh, const Bounds& bounds, const LocalFrame& fr
       R"("count":{},"type":"SCALAR"}}],"bufferViews":[{{"buffer":0,"byteOffset":0,)"
       R"("byteLength":{},"target":34962}},{{"buffer":0,"byteOffset":{},"byteLength":{},)"
       R"("target":34963}}],"buffers":[{{"byteLength":{}}}]}})",
-      extras, vertices, list(bounds.low), list(bounds.high), 3 * faces, 12 * vertices,
-      12 * vertices, 12 * faces, 12 * (vertices + faces));
+      extras, vertices, list(bounds.low.cast<double>()), list(bounds.high.cast<double>()),
+      3 * faces, 12 * vertices, 12 * vertices, 12 * faces, 12 * (vertices + faces));
   json.resize((json.size() + 3) / 4 * 4, ' ');
   return json;
 }
