@@ -85,9 +85,9 @@ void check_outputs(const Options& options, const fs::path& model_folder,
   inputs.push_back(options.housing_file);
   for (const io::ColmapImage& image : model.images)
     inputs.push_back(options.image_folder / image.name);
-  const std::vector<fs::path> outputs{options.scene_file, io::housing_beside(options.scene_file),
-                                      io::lenses_beside(options.scene_file),
-                                      io::geo_offset_beside(options.scene_file)};
+  const std::vector<fs::path> outputs{
+      options.named_output, options.scene_file, io::housing_beside(options.scene_file),
+      io::lenses_beside(options.scene_file), io::geo_offset_beside(options.scene_file)};
   require_no_inputs(outputs, inputs, "--output-file");
 }
 

@@ -130,6 +130,7 @@ void set_import(const Values& values, Options& options) {
   std::error_code error;
   if (!fs::is_directory(options.colmap_folder, error))
     fail("{}: is not a folder", options.colmap_folder.string());
+  options.named_output = in_working_folder(common, values.output);
   options.scene_file = with_extension(
       output_or(common, values.output, options.colmap_folder / "scene", "--output-file"), ".mvs");
   refuse_other_format(values.output, "--output-file");

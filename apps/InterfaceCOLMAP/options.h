@@ -13,6 +13,7 @@ struct Options {
   ParsedOptions parsed;
   std::filesystem::path colmap_folder;
   std::filesystem::path scene_file;     // output of an import, input of an export
+  std::filesystem::path named_output;   // output of an import as the user named it
   std::filesystem::path export_folder;  // output of an export; empty: import
   // The folder of the images, which exists. Empty in an export: the common folder of the images.
   std::filesystem::path image_folder;
