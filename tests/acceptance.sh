@@ -13,5 +13,7 @@ bash apps/pipeline/install-deps.sh
 cmake --preset release -DAXIAL_TESTS=ON --log-level=WARNING
 cmake --build --preset release --target InterfaceCOLMAP DensifyPointCloud SimulateUnderwater \
   EvaluateReconstruction AlignModel RefinePoses ReconstructMesh RefineMesh TextureMesh \
-  MapSurface CompareSurveys map_check change_check held_out_check seam_check static_overlay matching_benchmark
+  MapSurface CompareSurveys TransformScene ViewScene CalibrateHousing ReproducePaper \
+  map_check change_check held_out_check seam_check static_overlay \
+  matching_benchmark
 exec python3 tests/acceptance/acceptance.py "$@"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Brings a COLMAP model to the scale and place of a reference model with known centres.
 
-#include <algorithm>
 #include <numbers>
 
 #include "base/atomic_file.h"
@@ -80,13 +79,14 @@ int run(int argc, char** argv) {
                [&](const fs::path& staging) { io::write_colmap_text(staging, model); });
   for (const std::string& line : evaluate::not_matched(alignment, reference))
     log_warning("--reference {}: {}", options.reference.string(), line);
+  for (const std::string& line : alignment.outliers)
+    log_warning("--reference {}: {}", options.reference.string(), line);
   log_info("{} of {} images have a known centre, scale {:.9g}", alignment.names.size(),
            model.images.size(), alignment.similarity.scale);
-  log_info("Centre residuals: RMS {:.3f} mm, largest {:.3f} mm", alignment.rms * 1e3,
-           *std::max_element(alignment.residuals.begin(), alignment.residuals.end()) * 1e3);
-  log_info(
-      "Rotation residuals: largest {:.4f} degrees",
-      *std::max_element(alignment.turns.begin(), alignment.turns.end()) * 180 / std::numbers::pi);
+  log_info("Centre residuals: RMS {:.3f} mm, largest {:.3f} mm", alignment.rms_of_fitting * 1e3,
+           alignment.largest * 1e3);
+  log_info("Rotation residuals: largest {:.4f} degrees",
+           alignment.largest_turn * 180 / std::numbers::pi);
   log_info("Aligned model in {}", options.output.string());
   return 0;
 }

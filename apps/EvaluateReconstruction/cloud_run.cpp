@@ -35,6 +35,8 @@ Similarity align_by_centres(const Options& options, const Models& models,
   });
   for (const std::string& line : evaluate::not_matched(result, models.reference))
     log_warning("{}: {}", options.cameras.string(), line);
+  for (const std::string& line : result.outliers)
+    log_warning("{}: {}", options.cameras.string(), line);
   log_info("Aligned by {} camera centres: scale {:.9g}, RMS residual {:.3f} mm",
            result.names.size(), result.similarity.scale, result.rms * 1e3);
   report["centres"] = result.names.size();

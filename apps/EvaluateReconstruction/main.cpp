@@ -57,8 +57,8 @@ int run(int argc, char** argv) {
   const ThreadLimit threads(options.parsed.common.max_threads);
   check_outputs(options);
   const bool is_depth_map = options.input.extension() == ".dmap";
-  nlohmann::ordered_json report{{"input", options.input.string()}};
-  if (!options.truth.empty()) report["truth"] = options.truth.string();
+  nlohmann::ordered_json report{{"input", options.input.filename().string()}};
+  if (!options.truth.empty()) report["truth"] = options.truth.filename().string();
   if (is_depth_map)
     report.update(run_depth_map(options));
   else

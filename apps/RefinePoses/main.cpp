@@ -153,8 +153,9 @@ LocalFrame set_known(Options& options, const pose::Bundle& bundle, const LocalFr
                      UnusedInput& unused) {
   pose::AdjustOptions& adjust = options.refine.adjust;
   adjust = {};
-  add_known(options.scale_from, options.scale_sigma, options.parsed.common.working_folder, bundle,
-            adjust, unused);
+  options.dropped_positions =
+      add_known(options.scale_from, options.scale_sigma, options.parsed.common.working_folder,
+                bundle, adjust, unused);
   adjust.poses_known = options.poses == "known";
   pose::set_free_numbers(options.refine_list, options.sigmas, bundle, adjust, option_of);
   return adjust.positions.empty() ? frame_of_model : enter_local_frame(adjust.positions);
@@ -333,6 +334,8 @@ void finish(const Options& options, const Input& input, const pose::ColmapBundle
   for (const std::string& line : error_lines(results)) log_info("{}", line);
   const io::Housing result = to_housing(refined, input.housing);
   for (const auto& [name, port] : result.ports) io::check_port(port, "The refined port " + name);
+  for (const std::string& line : options.dropped_positions)
+    results.unused.push_back("--scale-from: " + line);
   warn(done.report, refined.bundle, options.refine, results.unused);
   write(options, refined, input.model, frame, result, results);
 }

@@ -22,7 +22,8 @@ struct Options {
   bool allow_missing = false;     // no error if the known scale cannot be used
   std::string scale_from;         // see scale_from.h; empty: refraction alone determines the scale
   double scale_sigma = 0.001;     // standard deviation of the known lengths [m]
-  std::string refine_list;        // `refine` of pose::set_free_numbers()
+  std::vector<std::string> dropped_positions;  // lines of add_known() (scale_from.h)
+  std::string refine_list;                     // `refine` of pose::set_free_numbers()
   pose::Sigmas sigmas;
   pose::RefineOptions refine;
 };

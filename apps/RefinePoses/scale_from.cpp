@@ -3,17 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
-#include <set>
 #include <type_traits>
 #include <vector>
 
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parse_number.h"
+#include "io/cameras/image_positions.h"
 #include "io/cameras/position_file.h"
-#include "scene/decompositions.h"
+#include "scene/robust_similarity.h"
 
 namespace axial::apps {
 namespace {
@@ -118,49 +117,70 @@ KnownDistance known_distance(KnownDistance::Between between, const std::string& 
   return known;
 }
 
-void check_positions(const std::vector<pose::KnownPosition>& positions, const pose::Bundle& bundle,
-                     const std::filesystem::path& file) {
-  Eigen::Matrix3Xd known(3, positions.size()), model(3, positions.size());
-  std::set<std::size_t> images;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const std::string& name = bundle.images[positions[i].image].name;
-    if (!images.insert(positions[i].image).second) fail("{}: {} occurs twice", file.string(), name);
-    known.col(static_cast<Eigen::Index>(i)) = positions[i].metres;
-    model.col(static_cast<Eigen::Index>(i)) = bundle.images[positions[i].image].pose.centre;
+// Positions and the centres of the same images in the model, as columns.
+struct Centres {
+  Eigen::Matrix3Xd model, known;
+  std::vector<std::string> names;
+};
+
+Centres centres_of(const io::ImagePositions& positions, const pose::Bundle& bundle) {
+  Centres centres;
+  centres.model.resize(3, static_cast<Eigen::Index>(positions.found.size()));
+  centres.known.resize(3, centres.model.cols());
+  // The fit needs no large coordinates, in which differences would lose digits.
+  for (std::size_t i = 0; i < positions.found.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    const pose::BundleImage& image = bundle.images[positions.found[i].image];
+    centres.model.col(column) = image.pose.centre;
+    centres.known.col(column) = positions.found[i].position - positions.found[0].position;
+    centres.names.push_back(image.name);
   }
-  if (relative_width(known) < kLineWidth || relative_width(model) < kLineWidth)
+  return centres;
+}
+
+// Removes positions that do not fit the others, and returns a line for each.
+std::vector<std::string> drop_outliers(io::ImagePositions& positions, const pose::Bundle& bundle,
+                                       const std::filesystem::path& file) {
+  const Centres centres = centres_of(positions, bundle);
+  if (relative_width(centres.known) < kLineWidth || relative_width(centres.model) < kLineWidth)
     no_use(
         "{}: the positions lie on one line, about which the rotation of the model is not "
         "determined",
         file.string());
+  if (const MirroredFit mirrored = mirrored_fit(centres.model, centres.known); mirrored.better)
+    fail("{}: {}", file.string(), mirrored_line(mirrored));
+  const RobustSimilarity fit = robust_similarity(centres.model, centres.known);
+  for (std::size_t k = fit.outliers.size(); k-- > 0;)
+    positions.found.erase(positions.found.begin() + static_cast<std::ptrdiff_t>(fit.outliers[k]));
+  std::vector<std::string> lines = outlier_lines(fit, centres.names);
+  for (const std::string& line : lines) log_warning("{}: {}", file.string(), line);
+  return lines;
 }
 
 // A survey's list may name photographs that COLMAP found no pose for: skips them with a warning.
-std::vector<pose::KnownPosition> read_positions(const std::filesystem::path& file, double sigma,
-                                                const pose::Bundle& bundle) {
-  std::vector<pose::KnownPosition> positions;
-  std::map<std::string, std::size_t> images;
-  for (std::size_t i = 0; i < bundle.images.size(); ++i) images.emplace(bundle.images[i].name, i);
-  const auto is_image = [&](const std::string& name) { return images.contains(name); };
-  std::vector<std::string> without_pose;
-  for (const io::NamedPosition& known : io::read_positions(file, is_image)) {
-    if (known.known)
-      positions.push_back({images.at(known.name), known.position, sigma});
-    else
-      without_pose.push_back(
-          fmt::format("{}:{}: the model has no image '{}'", file.string(), known.line, known.name));
-  }
-  if (positions.size() < 3)
+// Returns the lines of the positions that do not fit.
+std::vector<std::string> read_positions(const std::filesystem::path& file, double sigma,
+                                        const pose::Bundle& bundle,
+                                        std::vector<pose::KnownPosition>& known) {
+  std::vector<std::string> names;
+  for (const pose::BundleImage& image : bundle.images) names.push_back(image.name);
+  io::ImagePositions positions = io::positions_of_images(file, names, "the model");
+  if (positions.found.size() < 3)
     no_use("{}: contains {} positions of images of the model, at least 3 are needed{}",
-           file.string(), positions.size(),
-           without_pose.empty() ? "" : "; " + without_pose.front());
-  for (const std::string& line : without_pose) log_warning("{}", line);
-  check_positions(positions, bundle, file);
-  return positions;
+           file.string(), positions.found.size(),
+           positions.absent.empty() ? "" : "; " + positions.absent.front());
+  for (const std::string& line : positions.notes) log_info("{}", line);
+  for (const std::string& line : positions.absent) log_warning("{}", line);
+  const std::vector<std::string> dropped = drop_outliers(positions, bundle, file);
+  for (const io::ImagePosition& one : positions.found)
+    known.push_back(
+        {one.image, one.position, one.sigma.value_or(Eigen::Vector3d::Constant(sigma))});
+  return dropped;
 }
 
-void add(const std::string& scale_from, double sigma, const std::filesystem::path& working_folder,
-         const pose::Bundle& bundle, pose::AdjustOptions& adjust) {
+std::vector<std::string> add(const std::string& scale_from, double sigma,
+                             const std::filesystem::path& working_folder,
+                             const pose::Bundle& bundle, pose::AdjustOptions& adjust) {
   const std::string where = kOption + scale_from;
   const std::size_t colon = scale_from.find(':');
   const std::string kind = scale_from.substr(0, colon);
@@ -172,22 +192,25 @@ void add(const std::string& scale_from, double sigma, const std::filesystem::pat
     adjust.distances.push_back(
         known_distance(KnownDistance::Between::points, rest, sigma, bundle, where));
   else if (kind == "positions")
-    adjust.positions = read_positions(working_folder / rest, sigma, bundle);
+    return read_positions(working_folder / rest, sigma, bundle, adjust.positions);
   else
     fail("{}: must begin with images:, points: or positions:", where);
+  return {};
 }
 
 }  // namespace
 
-void add_known(const std::string& scale_from, double sigma,
-               const std::filesystem::path& working_folder, const pose::Bundle& bundle,
-               pose::AdjustOptions& adjust, UnusedInput& unused) {
-  if (scale_from.empty()) return;
+std::vector<std::string> add_known(const std::string& scale_from, double sigma,
+                                   const std::filesystem::path& working_folder,
+                                   const pose::Bundle& bundle, pose::AdjustOptions& adjust,
+                                   UnusedInput& unused) {
+  if (scale_from.empty()) return {};
   try {
-    add(scale_from, sigma, working_folder, bundle, adjust);
+    return add(scale_from, sigma, working_folder, bundle, adjust);
   } catch (const NoUse& reason) {
     const std::string what = reason.what();
     unused.report((what.starts_with(kOption) ? "" : kOption) + what);
+    return {};
   }
 }
 

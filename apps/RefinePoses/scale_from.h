@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "base/unused_input.h"
 #include "pose/adjust.h"
@@ -15,8 +16,9 @@ namespace axial::apps {
 //
 //     images:NAME,NAME,METRES   the distance of two camera centres
 //     points:ID,ID,METRES       the distance of two points of the model
-//     positions:FILE            camera centres, a file of io::read_positions; at least three, and
-//                               not all on one line
+//     positions:FILE            camera centres, a file of io::positions_of_images; at least three,
+//                               and not all on one line. Standard deviations in the file replace
+//                               `sigma`.
 //
 // A NAME that contains a comma must be written in double quotes, and a double quote inside the name
 // as "". The quotes may be left out if the names of the model allow only one reading.
@@ -25,9 +27,12 @@ namespace axial::apps {
 // model: no such image or point, both ends in one place, too few positions, or all positions on one
 // line. Such input is reported to `unused`, and `adjust` stays as it is. Positions of images
 // without a pose are skipped, with a warning for each, because the list of a survey may name more
-// photographs.
-void add_known(const std::string& scale_from, double sigma,
-               const std::filesystem::path& working_folder, const pose::Bundle& bundle,
-               pose::AdjustOptions& adjust, UnusedInput& unused);
+// photographs. Positions that do not fit the others (robust_similarity in
+// scene/robust_similarity.h) are left out with a warning, and these lines are returned. Positions
+// of a mirrored frame are an error.
+std::vector<std::string> add_known(const std::string& scale_from, double sigma,
+                                   const std::filesystem::path& working_folder,
+                                   const pose::Bundle& bundle, pose::AdjustOptions& adjust,
+                                   UnusedInput& unused);
 
 }  // namespace axial::apps

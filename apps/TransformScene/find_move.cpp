@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <set>
 #include <vector>
 
 #include "base/error.h"
@@ -11,7 +10,7 @@
 #include "base/naming.h"
 #include "evaluate/scene_alignment.h"
 #include "io/cameras/geo_offset.h"
-#include "io/cameras/position_file.h"
+#include "io/cameras/image_positions.h"
 #include "io/cameras/transform_file.h"
 #include "io/openmvs/mvs.h"
 
@@ -30,12 +29,17 @@ void tell(const evaluate::SceneAlignment& alignment, const std::string& how) {
              *alignment.turn * 180 / std::numbers::pi);
 }
 
+void warn_of_outliers(const fs::path& file, const evaluate::SceneAlignment& alignment) {
+  for (const std::string& line : alignment.outliers) log_warning("{}: {}", file.string(), line);
+}
+
 FrameMove align_to_scene(const Options& options, const io::SceneWithCameras& scene) {
   Scene reference = io::read_mvs(options.align, options.files.working_folder);
   const LocalFrame frame = io::enter_local_frame(reference, options.align);
   return naming(options.align, [&] {
     const evaluate::ImagePairs images = evaluate::pair_images(scene.scene, reference);
     const auto alignment = evaluate::align_scenes(scene.scene, reference, images, !options.rigid);
+    warn_of_outliers(options.align, alignment);
     tell(alignment, images.by_name ? "images with the same names"
                                    : "images in their order, because names do not match");
     return FrameMove{alignment.similarity, scene.frame, frame};
@@ -49,23 +53,19 @@ struct Known {
 
 // A survey's list may name photographs that are not in the scene: skips them with a warning.
 Known read_known(const Options& options, const Scene& scene) {
+  std::vector<std::string> paths;
+  std::vector<std::size_t> calibrated;
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    if (!scene.images[i].calibrated) continue;
+    calibrated.push_back(i);
+    paths.push_back(scene.images[i].path);
+  }
+  const auto read = io::positions_of_images(options.positions, paths, "the scene");
+  for (const std::string& line : read.notes) log_info("{}", line);
+  for (const std::string& line : read.absent) log_warning("{}", line);
   Known known;
-  std::set<std::size_t> seen;
-  const evaluate::ImageNames names(scene);
-  const auto is_image = [&](const std::string& name) { return !names.named(name).empty(); };
-  for (const io::NamedPosition& one : io::read_positions(options.positions, is_image)) {
-    const std::span<const std::size_t> images = names.named(one.name);
-    if (images.empty()) {
-      log_warning("{}:{}: the scene has no image '{}'", options.positions.string(), one.line,
-                  one.name);
-      continue;
-    }
-    if (images.size() > 1)
-      fail("{}:{}: '{}' is the end of {} and of {}", options.positions.string(), one.line, one.name,
-           scene.images[images[0]].path, scene.images[images[1]].path);
-    if (!seen.insert(images[0]).second)
-      fail("{}:{}: {} occurs twice", options.positions.string(), one.line, one.name);
-    known.images.push_back(images[0]);
+  for (const io::ImagePosition& one : read.found) {
+    known.images.push_back(calibrated[one.image]);
     known.positions.push_back(one.position);
   }
   return known;
@@ -78,7 +78,11 @@ FrameMove align_to_known(const Options& options, const io::SceneWithCameras& sce
   return naming(options.positions, [&] {
     const auto alignment =
         evaluate::align_to_positions(scene.scene, known.images, known.positions, !options.rigid);
+    warn_of_outliers(options.positions, alignment);
     tell(alignment, "known positions");
+    if (const auto line = evaluate::may_be_mirrored(scene.scene, known.images, known.positions,
+                                                    !options.rigid, alignment))
+      log_warning("{}: {}", options.positions.string(), *line);
     return FrameMove{alignment.similarity, scene.frame, frame};
   });
 }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run.h"
 
+#include <algorithm>
+#include <string>
+#include <string_view>
+
 #include "json_fields.h"
 
 namespace axial::apps {
@@ -8,9 +12,32 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// The text in which absolute paths are replaced by their last names: a page may be published, and
+// the folders of a computer are nobody else's business. A path begins at a slash at the beginning
+// of the text or behind one of `before`, and ends before one of `ends`.
+std::string without_folders(const std::string& text, std::string_view before,
+                            std::string_view ends) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size();) {
+    const bool begins = text[i] == '/' && text.find('/', i + 1) != i + 1 &&
+                        (i == 0 || before.find(text[i - 1]) != std::string_view::npos);
+    if (begins) {
+      const std::size_t end = std::min(text.find_first_of(ends, i), text.size());
+      const std::size_t last = text.rfind('/', text[end - 1] == '/' ? end - 2 : end - 1);
+      i = last == std::string::npos || last < i ? i + 1 : last + 1;
+      result += text.substr(i, end - i);
+      i = end;
+    } else {
+      result += text[i++];
+    }
+  }
+  return result;
+}
+
 Json words_of(const JsonField& field) {
   Json words = Json::array();
-  for (const JsonField& word : field.elements()) words.push_back(word.text());
+  for (const JsonField& word : field.elements())
+    words.push_back(without_folders(word.text(), "=:,", "=:,"));
   return words;
 }
 
@@ -18,7 +45,8 @@ Json warnings_of(const JsonField& field) {
   Json warnings = Json::array();
   for (const JsonField& warning : field.elements())
     warnings.push_back(
-        {{"text", warning.at("text").text()}, {"times", warning.at("times").number_from_0()}});
+        {{"text", without_folders(warning.at("text").text(), " =:,'\"(", " =:,;'\")")},
+         {"times", warning.at("times").number_from_0()}});
   return warnings;
 }
 

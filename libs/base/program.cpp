@@ -257,7 +257,11 @@ fs::path working_folder_of(const po::variables_map& values) {
 void read_config(const fs::path& working_folder, const po::options_description& config,
                  po::variables_map& values) {
   const fs::path cfg = working_folder / values["config-file"].as<std::string>();
-  if (std::ifstream in(cfg); in && fs::is_regular_file(cfg)) {
+  std::error_code ignored;
+  // The kind comes first: to open a pipe would wait for its writer.
+  std::ifstream in;
+  if (fs::is_regular_file(cfg, ignored)) in.open(cfg);
+  if (in.is_open()) {
     try {
       const po::parsed_options in_file = parse_config(in, config);
       refuse_negative(in_file, config);

@@ -2,6 +2,7 @@
 #include "evaluate/alignment.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -28,8 +29,8 @@ void check_spread(const Eigen::Matrix3Xd& points, const char* which) {
 
 }  // namespace
 
-Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
-                          std::span<const Eigen::Vector3d> target, bool with_scale) {
+RobustSimilarity fit_positions(std::span<const Eigen::Vector3d> source,
+                               std::span<const Eigen::Vector3d> target, bool with_scale) {
   if (source.size() != target.size())
     fail("{} positions cannot be fitted to {}", source.size(), target.size());
   if (source.size() < 3)
@@ -38,7 +39,14 @@ Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
   const Eigen::Matrix3Xd to = columns(target);
   check_spread(from, "estimated");
   check_spread(to, "reference");
-  return best_similarity(from, to, with_scale);
+  if (const MirroredFit mirrored = mirrored_fit(from, to, with_scale); mirrored.better)
+    fail("{}", mirrored_line(mirrored));
+  return robust_similarity(from, to, with_scale);
+}
+
+Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
+                          std::span<const Eigen::Vector3d> target, bool with_scale) {
+  return fit_positions(source, target, with_scale).similarity;
 }
 
 CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapModel& reference) {
@@ -58,16 +66,24 @@ CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapMode
   if (source.size() < 3)
     fail("the models have {} images with the same name, a similarity needs at least 3",
          source.size());
-  result.similarity = fit_similarity(source, target);
-  double sum = 0;
+  RobustSimilarity fit = fit_positions(source, target);
+  result.similarity = fit.similarity;
+  result.outliers = outlier_lines(fit, result.names);
+  double sum = 0, sum_of_fitting = 0;
   for (std::size_t i = 0; i < source.size(); ++i) {
     const double squared = (result.similarity(source[i]) - target[i]).squaredNorm();
     result.residuals.push_back(std::sqrt(squared));
     sum += squared;
     const Eigen::Matrix3d turn = apart[i] * result.similarity.rotation.transpose();
     result.turns.push_back(Eigen::AngleAxisd(turn).angle());
+    if (std::ranges::binary_search(fit.outliers, i)) continue;
+    sum_of_fitting += squared;
+    result.largest = std::max(result.largest, result.residuals.back());
+    result.largest_turn = std::max(result.largest_turn, result.turns.back());
   }
   result.rms = std::sqrt(sum / static_cast<double>(source.size()));
+  result.rms_of_fitting =
+      std::sqrt(sum_of_fitting / static_cast<double>(source.size() - fit.outliers.size()));
   return result;
 }
 

@@ -12,16 +12,23 @@
 #include "scene/local_frame.h"
 #include "scene/mesh.h"
 #include "scene/point_cloud.h"
+#include "scene/robust_similarity.h"
 
 namespace axial::evaluate {
 
 using axial::Similarity;
 
-// Returns the least-squares similarity (best_similarity) that maps source[i] to target[i], for any
-// unit and frame of both. The scale is 1 unless `with_scale`. Error if `source` and `target` have
-// different lengths or fewer than three points, if a coordinate is not finite, or if `source` or
-// `target` lies on one line, because the rotation about this line would be unknown. Points lie on
-// one line if their relative_width() is at most kLineWidth (scene/decompositions.h).
+// Returns the similarity that maps source[i] to target[i], without the outliers
+// (robust_similarity() in scene/robust_similarity.h), for any unit and frame of both. The scale is
+// 1 unless `with_scale`. Error if `source` and `target` have different lengths or fewer than three
+// points, if a coordinate is not finite, or if `source` or `target` lies on one line, because the
+// rotation about this line would be unknown. Points lie on one line if their relative_width() is at
+// most kLineWidth (scene/decompositions.h). Error that names the usual causes if the mirror image
+// of `source` fits much better (MirroredFit::better).
+RobustSimilarity fit_positions(std::span<const Eigen::Vector3d> source,
+                               std::span<const Eigen::Vector3d> target, bool with_scale = true);
+
+// The similarity of fit_positions().
 Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
                           std::span<const Eigen::Vector3d> target, bool with_scale = true);
 
@@ -33,12 +40,16 @@ struct CentreAlignment {
   std::vector<double> residuals;  // distances of aligned and reference centres [reference unit]
   std::vector<double> turns;      // angles between aligned and reference rotations [rad]
   double rms = 0;                 // root mean square of `residuals` [reference unit]
+  // The same, the largest residual and the largest turn without the centres that do not fit the
+  // others, and a line of text for each of these (outlier_lines() in scene/robust_similarity.h).
+  double rms_of_fitting = 0, largest = 0, largest_turn = 0;
+  std::vector<std::string> outliers;
 };
 
-// Returns the least-squares similarity that maps the camera centres of `model` to the camera
-// centres of `reference`. Images are matched by name. Images without a partner are ignored. Error
-// if fewer than three images match, if a matched centre is not finite, or if the matched centres of
-// one model lie on one line (see fit_similarity()).
+// Returns the similarity that maps the camera centres of `model` to the camera centres of
+// `reference` (fit_positions()). Images are matched by name. Images without a partner are ignored.
+// Error if fewer than three images match, if a matched centre is not finite, or if the matched
+// centres of one model lie on one line (see fit_similarity()).
 CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapModel& reference);
 
 // Reports the images of `reference` that have no partner in the model. Returns one line of text

@@ -94,17 +94,38 @@ SceneAlignment align_to_positions(const Scene& scene, std::span<const std::size_
                                   std::span<const Eigen::Vector3d> positions, bool with_scale) {
   std::vector<Eigen::Vector3d> centres;
   for (const std::size_t i : images) centres.push_back(scene.images[i].pose.centre);
+  const RobustSimilarity fit = fit_positions(centres, positions, with_scale);
   SceneAlignment result;
-  result.similarity = fit_similarity(centres, positions, with_scale);
-  result.images = images.size();
-  double sum = 0;
-  for (std::size_t k = 0; k < centres.size(); ++k) {
-    const double distance = (result.similarity(centres[k]) - positions[k]).norm();
-    sum += distance * distance;
-    result.largest = std::max(result.largest, distance);
-  }
-  result.rms = std::sqrt(sum / static_cast<double>(centres.size()));
+  result.similarity = fit.similarity;
+  result.images = images.size() - fit.outliers.size();
+  result.rms = fit.rms;
+  for (std::size_t k = 0; k < centres.size(); ++k)
+    if (!std::ranges::binary_search(fit.outliers, k))
+      result.largest = std::max(result.largest, fit.distances[k]);
+  std::vector<std::string> names;
+  for (const std::size_t i : images) names.push_back(scene.images[i].path);
+  result.outliers = outlier_lines(fit, names);
   return result;
+}
+
+std::optional<std::string> may_be_mirrored(const Scene& scene, std::span<const std::size_t> images,
+                                           std::span<const Eigen::Vector3d> positions,
+                                           bool with_scale, const SceneAlignment& alignment) {
+  constexpr double kUp = 0.7071;  // sine of 45 degrees
+  Eigen::Matrix3Xd from(3, images.size()), to(3, images.size());
+  for (std::size_t k = 0; k < images.size(); ++k) {
+    const Pose& pose = scene.images[images[k]].pose;
+    const double up = alignment.similarity(pose).rotation(2, 2);  // of the optical axis
+    if (!(up > kUp)) return {};
+    from.col(static_cast<Eigen::Index>(k)) = pose.centre;
+    to.col(static_cast<Eigen::Index>(k)) = positions[k];
+  }
+  if (!mirrored_fit(from, to, with_scale).alike) return {};
+  return fmt::format(
+      "all cameras look up after the alignment, and the positions fit the mirror image of the "
+      "cameras "
+      "as well, because they are nearly on a plane. If the cameras looked down, {}",
+      kCausesOfMirror);
 }
 
 SceneAlignment align_scenes(const Scene& scene, const Scene& reference, const ImagePairs& images,
@@ -124,22 +145,6 @@ SceneAlignment align_scenes(const Scene& scene, const Scene& reference, const Im
   }
   result.turn = turn;
   return result;
-}
-
-ImageNames::ImageNames(const Scene& scene) {
-  for (const std::size_t i : calibrated(scene)) {
-    fs::path end;
-    for (const std::string& component : components_from_the_end(scene.images[i].path)) {
-      end = end.empty() ? fs::path(component) : fs::path(component) / end;
-      images_[end.string()].push_back(i);
-    }
-  }
-}
-
-std::span<const std::size_t> ImageNames::named(const std::string& name) const {
-  const auto found = images_.find(fs::path(name).lexically_normal().string());
-  if (found == images_.end()) return {};
-  return found->second;
 }
 
 }  // namespace axial::evaluate

@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -26,6 +25,9 @@ struct SceneAlignment {
   // Largest angle [rad] between the rotation of a moved image and the rotation of its partner in
   // the reference. Only align_scenes() sets this angle.
   std::optional<double> turn = {};
+  // Lines of text for the targets that do not fit the others (outlier_lines() in
+  // scene/robust_similarity.h). They do not count in the fit, in `rms` and in `largest`.
+  std::vector<std::string> outliers = {};
 };
 
 // Pairs of calibrated images: the index in the scene, then the index in the reference. The pairs
@@ -47,31 +49,22 @@ ImagePairs pair_images(const Scene& scene, const Scene& reference);
 
 // Fits the similarity that maps the camera centres of `scene` to the camera centres of `reference`.
 // `images`: the pairs of images (pair_images). Without `with_scale` the scale is 1. Error as for
-// fit_similarity() (alignment.h).
+// fit_positions() (alignment.h).
 SceneAlignment align_scenes(const Scene& scene, const Scene& reference, const ImagePairs& images,
                             bool with_scale);
 
 // Fits the similarity that maps the camera centre of image images[k] of `scene` to positions[k].
 // Without `with_scale` the scale is 1. Precondition: the images are calibrated. Error as for
-// fit_similarity() (alignment.h).
+// fit_positions() (alignment.h).
 SceneAlignment align_to_positions(const Scene& scene, std::span<const std::size_t> images,
                                   std::span<const Eigen::Vector3d> positions, bool with_scale);
 
-// Finds the calibrated images of a scene by the ends of their paths. The time of a search does not
-// depend on the number of images.
-class ImageNames {
- public:
-  // The scene may change or end after the constructor.
-  explicit ImageNames(const Scene& scene);
-
-  // Returns the indices of the calibrated images whose path ends in the path `name`, in ascending
-  // order. Whole folder and file names are compared. An empty name is the end of no path. The
-  // result is valid as long as the object.
-  std::span<const std::size_t> named(const std::string& name) const;
-
- private:
-  // The images by each end of their path: the file, the file with its folder, and so on.
-  std::unordered_map<std::string, std::vector<std::size_t>> images_;
-};
+// Warns of positions that may be those of a mirrored frame, although the fit cannot tell, because
+// all positions are nearly on a plane: returns a line if the mirror image of the cameras fits as
+// well, and all moved cameras look up, more than 45 degrees above the horizon of the axis z.
+// `alignment`: the result of align_to_positions() for the same arguments.
+std::optional<std::string> may_be_mirrored(const Scene& scene, std::span<const std::size_t> images,
+                                           std::span<const Eigen::Vector3d> positions,
+                                           bool with_scale, const SceneAlignment& alignment);
 
 }  // namespace axial::evaluate

@@ -26,7 +26,8 @@ struct KnownDistance {
 struct KnownPosition {
   std::size_t image = 0;                             // index into Bundle::images
   Eigen::Vector3d metres = Eigen::Vector3d::Zero();  // the centre [m], world frame
-  double sigma = 0;  // standard deviation of each coordinate [m], above 0
+  // Standard deviations of the coordinates [m], above 0.
+  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
 };
 
 // Which numbers of a camera are unknown. housing_change.h lists the numbers by index, with their

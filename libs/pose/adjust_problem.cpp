@@ -29,12 +29,11 @@ struct LengthResidual {
 };
 
 struct PositionResidual {
-  Eigen::Vector3d metres;
-  double sigma;
+  Eigen::Vector3d metres, sigma;
 
   template <class T>
   bool operator()(const T* pose, T* residual) const {
-    for (int k = 0; k < 3; ++k) residual[k] = (pose[3 + k] - metres(k)) / sigma;
+    for (int k = 0; k < 3; ++k) residual[k] = (pose[3 + k] - metres(k)) / sigma(k);
     return true;
   }
 };
@@ -68,10 +67,10 @@ void check(const Bundle& bundle, const AdjustOptions& options) {
       fail("bundle adjustment: the known distance is {} +- {} m: both values must be positive",
            known.metres, known.sigma);
   for (const KnownPosition& known : options.positions)
-    if (!(known.sigma > 0))
+    if (!(known.sigma.array() > 0).all())
       fail(
           "bundle adjustment: the standard deviation of a known position is {} m: must be positive",
-          known.sigma);
+          known.sigma.minCoeff());
   for (const BundleCamera& camera : bundle.cameras) {
     const auto& free = options.unknowns(camera).free;
     const auto end = free.begin() + kFocalNumber;

@@ -111,9 +111,10 @@ void write_state(const std::filesystem::path& file, const State& state,
 std::optional<State> read_state(const std::filesystem::path& file, const std::string& fingerprint) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (error) return {};  // also for a pipe, whose opening would wait for a writer
   std::ifstream in(file, std::ios::binary);
   Head head;
-  if (error || !in.read(reinterpret_cast<char*>(&head), sizeof(head))) return {};
+  if (!in.read(reinterpret_cast<char*>(&head), sizeof(head))) return {};
   if (!text_of(head.kind).starts_with(kKind) || text_of(head.fingerprint) != fingerprint) return {};
   if (size_of(head, size) != size) return {};
   Fingerprint print;

@@ -22,6 +22,18 @@ def wrong_input(work):
     return program_test(work, "wrong_input_test")
 
 
+@point("1,000 damaged inputs of each program: exit code 0 or 1, one line that names the file or the option, "
+       "no half-written output, no hang, at most 1 GiB")
+def mutations(work):
+    log = work / "mutations.log"
+    try:
+        cost = measured(log, sys.executable, "-B", ROOT / "tests/acceptance/mutations.py", "--work",
+                        work / "mutations", "--bin", BIN)
+    except RuntimeError as error:
+        return f"{log.read_text().strip().splitlines()[-1]}: {error}", False
+    return f"{log.read_text().strip().splitlines()[-1]} ({cost['wall'] / 60:.1f} minutes)", True
+
+
 @point("same bytes after kill -9 and for 1 and 2 threads; finished maps not recomputed")
 def kill_and_threads(work):
     return program_test(work, "end_to_end_test")

@@ -6,6 +6,7 @@ import argparse
 import contextlib
 import io
 import json
+import math
 import os
 import subprocess
 import sys
@@ -15,7 +16,7 @@ import unittest.mock
 from pipeline_folder import PIPELINE, InFolder
 from programs import grey_png, main
 
-from axial_pipeline import (colmap, files, lens, positions, reconstruct_options, reconstruct_steps,
+from axial_pipeline import (colmap, files, lens, position_rows, positions, reconstruct_options, reconstruct_steps,
                             run_file, running, steps, versions)
 from axial_pipeline.failure import Failure
 from axial_pipeline.programs import Programs, default_folder
@@ -193,18 +194,38 @@ class Positions(InFolder):
                            ("# name x y z", None), ("", None), ("a.jpg 1 2 3 # 4 5 6", "a.jpg"),
                            ('"#lost.jpg" 1 2 3', "#lost.jpg"), ('"q" 1.jpg 1 2 3', '"q" 1.jpg'),
                            ('"q ""r""" 1 2 3 # x', 'q "r"'), ("lost 2.jpg 1 2 3", "lost 2.jpg")):
-            entry = positions.entry_in(line, images.__contains__)
+            entry = position_rows.entry_in(line, images.__contains__)
             self.assertEqual(entry, name and (name, (1, 2, 3)), line)
 
     def test_positions_are_those_of_the_known_names(self):
         file = self.write("positions.txt", "\ufeffa.jpg 1 -2.5 3e2\n# b.jpg 1 1 1\n"
                           'lost.jpg 1 2 3\n"c d.jpg" 4 5 6 # 7 8 9\n')
-        self.assertEqual(positions.read(file, {"a.jpg", "b.jpg", "c d.jpg"}.__contains__),
+        self.assertEqual(positions.read(file, ["a.jpg", "b.jpg", "c d.jpg"]),
                          {"a.jpg": (1, -2.5, 300), "c d.jpg": (4, 5, 6)})
         for line in ("b.jpg", "b.jpg 1 2", "b.jpg 1 2 nan", '"b.jpg" 1 2', '"b.jpg" 1 2 3 4'):
             self.write("positions.txt", f"a.jpg 1 2 3\n{line}\n")
             with self.assertRaisesRegex(Failure, "positions.txt:2: must be NAME X Y Z"):
-                positions.read(file, {"a.jpg", "b.jpg"}.__contains__)
+                positions.read(file, ["a.jpg", "b.jpg"])
+
+    def test_files_of_other_programs(self):
+        """The same files as in tests/io/position_file_test.cpp and image_positions_test.cpp."""
+        names = ["dive1/IMG_1.JPG", "dive1/IMG_2.JPG", "c d.tif"]
+        expected = {names[0]: (1.5, 2, -3), names[1]: (4, 5, 6)}
+        for text in ("IMG_1,1.5,2,-3\nimg_2.jpg,4,5,6\n", "sep=;\nIMG_1;1,5;2;-3\n\"IMG_2\";4;5;6\n",
+                     "C:\\x\\dive1\\IMG_1.JPG\t1,5\t2\t-3\rdive1/IMG_2.DNG\t4\t5\t6\r",
+                     "WGS84 UTM 33N\nIMG_1.JPG 1.5 2 -3 0 0 0 .1 .2 x\nIMG_2.JPG 4 5 6\n",
+                     "#Label,Y/Northing,X/Easting,Z/Altitude,Accuracy_(m),Error_(m)\n"
+                     "IMG_1,2,1.5,-3,0.1,9\nIMG_2,5,4,6,,\nc d,,,,,\n# Total,,,,0.1,\n",
+                     "name x y z\nIMG_1 1.5 2 -3\nIMG_2 4 5 6\n"):
+            file = self.write("positions.csv", text)
+            self.assertEqual(positions.read(file, names), expected, text)
+        file = self.write("degrees.csv", "name,latitude,longitude,altitude\nIMG_1,54.25,16.5,-3\n"
+                          "IMG_2,54.2501,16.5,-3\nc d.tif,54.25,16.5001,-3\n")
+        found = positions.read(file, names)
+        for name, metres in ((names[1], 11.13), (names[2], 6.52)):  # of the ellipsoid WGS 84
+            self.assertAlmostEqual(math.dist(found[names[0]], found[name]), metres, delta=0.05)
+        with self.assertRaisesRegex(Failure, "positions.csv:1: 'IMG_1' can be a/IMG_1.JPG or b/IMG_1.JPG"):
+            positions.read(self.write("positions.csv", "IMG_1 1 2 3\n"), ["a/IMG_1.JPG", "b/IMG_1.JPG"])
 
     def test_names_of_no_photograph_are_told(self):
         for name in ("a.jpg", "b.jpg", "c.jpg"):

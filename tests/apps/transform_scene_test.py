@@ -165,6 +165,90 @@ class Alignment(Transform):
                      self.path("known.txt"))
 
 
+CENTRES = [(0, 0, 0), (1, 0, 0.1), (2, 0.1, -0.1), (0, 1, 0.2), (1, 1.1, 0), (2, 1, 0.3), (0.1, 2, 0),
+           (1, 2, -0.2)]
+
+
+class Positions(Transform):
+    """Files of positions of eight photographs, as users and other programs write them."""
+
+    def setUp(self):
+        super().setUp()
+        self.names = [f"dive1/IMG_{i}.JPG" for i in range(8)]
+        # The cameras look along the axis z, which is downwards in the positions.
+        write(self.scene, tiny_scene.mvs([self.path(name) for name in self.names], centres=CENTRES))
+        self.known = [(x, -y, -z) for x, y, z in CENTRES]
+
+    def align(self, lines, *arguments):
+        write(self.path("known.csv"), "\n".join(lines) + "\n")
+        said = self.transform("--positions", self.path("known.csv"), *arguments)
+        return said.stdout + said.stderr
+
+    def lines(self, known, form="{} {} {} {}"):
+        return [form.format(name, *place) for name, place in zip(self.names, known)]
+
+    def check(self, expected, within=1e-9):
+        for pose, centre in zip(Mvs(self.at("moved.mvs")).poses, expected):
+            self.near(pose[3], centre, within)
+
+    def test_labels_and_fields_of_other_programs(self):
+        short = [name[6:-4] for name in self.names]
+        for label, form in ((str, "{},{},{},{}"), (str.lower, "{};{};{};{}"),
+                            (lambda name: name[:-4], "{}\t{}\t{}\t{}"),
+                            (lambda name: "C:\\dive\\dive1\\" + name[6:], '"{}", {}, {}, {}'),
+                            (lambda name: name[6:-4] + ".dng", "{} {} {} {} 0 0 0 0.01 0.02")):
+            said = self.align([form.format(label(name), *place)
+                               for name, place in zip(self.names, self.known)])
+            self.assertIn("Aligned by 8 known positions: scale 1,", said)
+            self.assertNotIn("has no image", said)
+            self.check(self.known)
+        said = self.align(["#Label,Y/Northing,X/Easting,Z/Altitude,Accuracy_(m),Error_(m)"]
+                          + [f"{name},{y},{x},{z},0.01,0.3"
+                             for name, (x, y, z) in zip(short, self.known)])
+        self.assertNotIn("warning", said)
+        self.check(self.known)
+        said = self.align(["image;x;y;depth"] + [f"{name};{x};{y};{-z + 5}".replace(".", ",")
+                                                 for name, (x, y, z) in zip(short, self.known)])
+        self.assertIn("depths are positive downwards", said)
+        self.check([(x, y, z - 5) for x, y, z in self.known])
+
+    def test_degrees(self):
+        lines = ["label,longitude,latitude,altitude"] + [
+            f"{name},{16.5 + x / 65200!r},{54.25 + y / 111300!r},{z}"
+            for name, (x, y, z) in zip(self.names, self.known)]
+        said = self.align(lines, "--rigid")
+        self.assertIn("WGS 84 / UTM zone 33N (EPSG:32633)", said)
+        offset = json.loads(self.at("moved.geo.json"))["geo_offset"]
+        # 597730.71, 6012375.70 is the first position by PROJ; the last digits are the convergence.
+        moved_to = Mvs(self.at("moved.mvs")).poses[0][3]
+        self.near([a + b for a, b in zip(moved_to, offset)], (597730.71, 6012375.70, 0), 0.05)
+
+    def test_a_wrong_position_is_named_and_left_out(self):
+        wrong = [list(place) for place in self.known]
+        wrong[2][0] += 50
+        for arguments in ((), ("--rigid",)):
+            said = self.align(self.lines(wrong), *arguments)
+            self.assertIn("warning: " + self.path("known.csv") + ": the position of "
+                          + self.path(self.names[2]) + " is 50 m from where the 7 positions", said)
+            self.assertIn("Aligned by 7 known positions: scale 1,", said)
+            self.check(self.known)
+
+    def test_a_left_handed_frame_is_refused(self):
+        for known in ([(x, y, -z) for x, y, z in self.known], [(y, x, z) for x, y, z in self.known]):
+            write(self.path("known.csv"), "\n".join(self.lines(known)))
+            for arguments in ((), ("--rigid",)):
+                self.refused("depth, positive downwards (give the height), or the northing stands "
+                             "before the easting", "--positions", self.path("known.csv"), *arguments)
+
+    def test_a_left_handed_frame_of_a_plane_is_warned_of(self):
+        level = [(x, y, 0) for x, y, _ in CENTRES]
+        write(self.scene, tiny_scene.mvs([self.path(name) for name in self.names], centres=level))
+        said = self.align(self.lines([(y, -x, 0) for x, y, _ in self.known]))
+        self.assertNotIn("look up", said)
+        said = self.align(self.lines([(x, y, -3) for x, y, _ in level]))
+        self.assertIn("warning: " + self.path("known.csv") + ": all cameras look up", said)
+
+
 class Ports(Transform):
     def test_a_scale_behind_a_port(self):
         self.port(PORT)

@@ -195,6 +195,22 @@ class Folder(SurveyCase):
         self.refuses_and_keeps("none.json: ", *self.view("--run", "none.json"))
         self.refuses_and_keeps("--map-size 1: must be from 16", *self.view("--map-size", 1))
 
+    def test_no_folder_of_the_user_is_in_the_page(self):
+        home = "/home/somebody/dive 3"
+        run = {"command": ["reconstruct", f"--images={home}/photographs", "--scale-sigma=1/2",
+                           f"--scale-from=positions:{home}/a.csv"],
+               "steps": [{**RUN["steps"][0], "command": ["/usr/local/bin/colmap", "-i", f"{home}/out/scene.mvs"],
+                          "warnings": [{"text": "/home/somebody/out/a.jpg: is dark, like '/home/somebody/b.jpg'",
+                                        "times": 1}]}]}
+        write(self.path("work", "run.json"), json.dumps(run))
+        self.succeeds(*self.survey())
+        page = contents(self.report)
+        self.assertEqual([name for name, data in page.items() if b"somebody" in data], [])
+        shown = b"".join(page[name] for name in page if name.startswith("data"))
+        for text in (b"--images=photographs", b"--scale-sigma=1/2", b"--scale-from=positions:a.csv",
+                     b'"colmap"', b'"scene.mvs"', b"a.jpg: is dark, like 'b.jpg'"):
+            self.assertIn(text, shown)
+
     def test_maps_of_other_planes_are_refused(self):
         self.succeeds("CompareSurveys", "-i", self.made.path("work", "before.ply"), "-w", self.work, "--other",
                       self.made.path("work", "after.ply"), "-o", "change", "--up", "0,0.2,1", "--gsd", PIXEL)

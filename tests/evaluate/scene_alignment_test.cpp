@@ -62,22 +62,5 @@ TEST(SceneAlignment, FindsTheSimilarity) {
   EXPECT_LE(found.rms, found.largest);
 }
 
-TEST(SceneAlignment, NamesAreEndsOfPaths) {
-  Scene scene = scene_of({"/a/left/1.jpg", "/a/right/1.jpg", "/a/21.jpg", "/b/left/1.jpg"});
-  scene.images[3].calibrated = false;
-  const ImageNames names(scene);
-  const auto named = [&](const std::string& name) {
-    const auto found = names.named(name);
-    return std::vector<std::size_t>(found.begin(), found.end());
-  };
-  EXPECT_EQ(named("left/1.jpg"), std::vector<std::size_t>{0});
-  EXPECT_EQ(named("1.jpg"), (std::vector<std::size_t>{0, 1}));
-  EXPECT_EQ(named("./left/../right/1.jpg"), std::vector<std::size_t>{1});
-  EXPECT_EQ(named("/a/right/1.jpg"), std::vector<std::size_t>{1});
-  EXPECT_EQ(named("21.jpg"), std::vector<std::size_t>{2});
-  for (const char* other : {"ft/1.jpg", "/left/1.jpg", "/b/left/1.jpg", "left", "1.jpg/", ""})
-    EXPECT_TRUE(named(other).empty()) << other;
-}
-
 }  // namespace
 }  // namespace axial::evaluate

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Texts that users write, and lists of written files.
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 
@@ -13,17 +14,23 @@ namespace axial::fuzz {
 namespace {
 
 void read_position_file(const fs::path& file) {
-  const auto positions =
+  const io::PositionFile read =
       io::read_positions(file, [](const std::string& name) { return name.ends_with(".png"); });
-  for (const io::NamedPosition& position : positions)
+  for (const io::NamedPosition& position : read.positions)
     require(position.line > 0 && position.position.allFinite(), "a position is not possible");
 }
 
 bool write_position_seed(const fs::path& file, int variant) {
-  write_atomically(file,
-                   "\xEF\xBB\xBF# name x y z\na b.png 1 -2e3 +3.5 # first\n"
-                   "\"a \"\" #b.png\" 4 5 6\nc#.png\t7 8 9\n");
-  return variant < 1;
+  constexpr std::array kSeeds{
+      "\xEF\xBB\xBF# name x y z\na b.png 1 -2e3 +3.5 # first\n"
+      "\"a \"\" #b.png\" 4 5 6\nc#.png\t7 8 9\n",
+      "# CoordinateSystem: GEOGCS[\"WGS 84\"]\n"
+      "#Label,X/Longitude,Y/Latitude,Z/Altitude,Accuracy_X/Y_(m),Accuracy_Z_(m),Yaw\n"
+      "a.png,15.1,-54.2,-3.5,0.1,0.2,90\n\"b\",15.1001,-54.2001,-3.5,,,\nc,,,,,,\n",
+      "EPSG:4326\na.png 15.1 54.2 3 0 0 0 0.1 0.2 more\nb.png 15.2 54.3 3\n",
+      "sep=;\nName;Northing;Easting;Depth\nC:\\dive\\a.PNG;1,5;2,5;3,5\n"};
+  write_atomically(file, kSeeds[std::min<std::size_t>(static_cast<std::size_t>(variant), 3)]);
+  return variant < 4;
 }
 
 // No file that is found lies outside the folder.

@@ -67,7 +67,8 @@ TEST_F(ByteOrderMark, InAHousingAndLenses) {
 
 TEST_F(ByteOrderMark, InPositions) {
   const auto file = marked("positions.txt", "a.jpg 1 2 3\n");
-  EXPECT_EQ(read_positions(file, [](const std::string&) { return false; }).at(0).name, "a.jpg");
+  EXPECT_EQ(read_positions(file, [](const std::string&) { return false; }).positions.at(0).name,
+            "a.jpg");
 }
 
 }  // namespace

@@ -32,14 +32,18 @@ std::string in_quotes(const std::string& name) {
   return text + '"';
 }
 
-std::vector<NamedPosition> positions_in(const std::string& text,
-                                        const std::set<std::string>& images = {}) {
+PositionFile file_with(const std::string& text, const std::set<std::string>& images = {}) {
   const fs::path folder = test::empty_folder();
   test::put(folder / "positions.txt", text);
-  const auto positions = read_positions(
+  PositionFile read = read_positions(
       folder / "positions.txt", [&](const std::string& name) { return images.contains(name); });
   fs::remove_all(folder);
-  return positions;
+  return read;
+}
+
+std::vector<NamedPosition> positions_in(const std::string& text,
+                                        const std::set<std::string>& images = {}) {
+  return file_with(text, images).positions;
 }
 
 // Names that the model has need no quotes; every name can be quoted.
@@ -93,12 +97,118 @@ TEST(Positions, CommentsAreNoNames) {
 
 TEST(Positions, NameTheLineThatIsWrong) {
   for (const char* line :
-       {"a.jpg 1 2", "1 2 3", "a.jpg 1 2 x", "a.jpg", "\"a.jpg\"", "a.jpg,1,2,3", "a.jpg 1 2 # 3"})
+       {"a.jpg 1 2", "1 2 3", "a.jpg 1 2 x", "a.jpg", "\"a.jpg\"", "a.jpg,1,2", "a.jpg 1 2 # 3"})
     EXPECT_THAT(error_of([&] { positions_in("b 1 2 3\n" + std::string(line) + "\n"); }),
                 HasSubstr("positions.txt:2: must be NAME X Y Z"))
         << line;
   EXPECT_THAT(error_of([&] { positions_in("a.jpg 1 inf 3"); }),
               HasSubstr("positions.txt:1: 'inf' is not finite"));
+}
+
+// The lines of a file as "name=(x,y,z)".
+std::string told(const PositionFile& file) {
+  std::string text;
+  for (const NamedPosition& one : file.positions)
+    text += fmt::format("{}=({},{},{})", one.name, one.position.x(), one.position.y(),
+                        one.position.z());
+  return text;
+}
+
+TEST(Positions, MayBeFieldsBetweenDelimiters) {
+  for (const char* text :
+       {"a.jpg,1.5,2,-3\n\"b,1\",4,5,6\n", "a.jpg, 1.5, 2, -3\r\n\"b,1\", 4, 5, 6 # here\r\n",
+        "a.jpg;1,5;2;-3;\n\"b,1\";4;\"5\";6\n", "sep=;\na.jpg;1,5;2,0;-3\nb,1;4;5;6\n",
+        "a.jpg\t1,5\t2\t-3\rb,1\t4\t5\t6\r", "a.jpg\t1.5\t2\t-3\nb,1\t4\t5\t6\n"})
+    EXPECT_EQ(told(file_with(text)), "a.jpg=(1.5,2,-3)b,1=(4,5,6)") << text;
+  EXPECT_THAT(error_of([] { positions_in("a.jpg,1,5,2,5,3,5\n"); }),
+              HasSubstr("positions.txt:1: commas separate the fields and may be decimal marks"));
+}
+
+TEST(Positions, HeadersNameTheColumns) {
+  const PositionFile metashape = file_with(
+      "# CoordinateSystem: PROJCS[\"WGS 84 / UTM zone 33N\"]\n"
+      "#Label,X/Easting,Y/Northing,Z/Altitude,Accuracy_X/Y_(m),Accuracy_Z_(m),Yaw,Error_(m),X_est\n"
+      "IMG_1,500001,5400002,-3,0.5,1.5,90,0.02,500001.01\n"
+      "IMG_2,,,,,,,,\n"
+      "IMG_3,500004,5400005,-6,,,,,\n# Total,,,,,,,0.1,\n");
+  EXPECT_EQ(told(metashape), "IMG_1=(500001,5400002,-3)IMG_3=(500004,5400005,-6)");
+  EXPECT_EQ(metashape.positions[0].sigma, Eigen::Vector3d(0.5, 0.5, 1.5));
+  EXPECT_FALSE(metashape.positions[1].sigma);
+  EXPECT_THAT(metashape.notes, testing::ElementsAre(HasSubstr("1 lines have no coordinates")));
+
+  EXPECT_EQ(told(file_with("Northing;Easting;Height [m];File Name\n2;1,5;3;a b.jpg\n")),
+            "a b.jpg=(1.5,2,3)");
+  EXPECT_EQ(told(file_with("# name north east up\na b.jpg 2 1 3\n")), "a b.jpg=(1,2,3)");
+  const PositionFile depths = file_with("image,x,y,depth\na,1,2,3\nb,4,5,0.5\n");
+  EXPECT_EQ(told(depths), "a=(1,2,-3)b=(4,5,-0.5)");
+  EXPECT_THAT(depths.notes, testing::ElementsAre(HasSubstr("depths are positive downwards")));
+  EXPECT_EQ(told(file_with("image,x,y,depth\na,1,2,-3\nb,4,5,-0.5\n")), "a=(1,2,-3)b=(4,5,-0.5)");
+
+  EXPECT_THAT(error_of([] { positions_in("label,x (ft),y (ft),z (ft)\na,1,2,3\n"); }),
+              HasSubstr("positions.txt:1: column 'x' is in 'ft', but positions must be in metres"));
+  EXPECT_THAT(error_of([] { positions_in("label,x,y,z\na,1,,3\n"); }),
+              HasSubstr("positions.txt:2: '' is not a number"));
+  EXPECT_THAT(error_of([] { positions_in("label,x,y,z\na,1,2,3,4\n"); }),
+              HasSubstr("positions.txt:2: has 5 fields, but the header names 4 columns"));
+}
+
+// OpenDroneMap's geo.txt and Pix4D's files.
+TEST(Positions, NumbersBehindThePositionMayBeAccuracies) {
+  const std::set<std::string> images{"a.jpg", "b c.jpg"};
+  const PositionFile odm = file_with(
+      "WGS84 UTM 33N\na.jpg 500001 5400002 -3 10 0 0 0.5 1.5 any words\nb c.jpg 500004 5400005 "
+      "-6\n",
+      images);
+  EXPECT_EQ(told(odm), "a.jpg=(500001,5400002,-3)b c.jpg=(500004,5400005,-6)");
+  EXPECT_EQ(odm.positions[0].sigma, Eigen::Vector3d(0.5, 0.5, 1.5));
+  EXPECT_THAT(odm.notes, testing::ElementsAre(HasSubstr("taken as the accuracies")));
+  EXPECT_EQ(file_with("a.jpg,1,2,3,0.5,1.5\n").positions.at(0).sigma,
+            Eigen::Vector3d(0.5, 0.5, 1.5));
+  EXPECT_FALSE(file_with("a.jpg,1.5,2,3,10,20,30\n").positions.at(0).sigma);
+  EXPECT_THAT(error_of([] { positions_in("a.jpg,1,2,3,4\n"); }),
+              HasSubstr("positions.txt:1: must be NAME X Y Z, but 4 numbers follow the name"));
+}
+
+// The places in UTM are those of PROJ 9.1 (proj_trans from EPSG:4326 to EPSG:32633 and EPSG:32701).
+TEST(Positions, DegreesBecomeMetres) {
+  const PositionFile odm = file_with("EPSG:4326\na.jpg 16.5 54.25 -3\nb.jpg 16.5001 54.2501 -4\n");
+  ASSERT_EQ(odm.positions.size(), 2u);
+  EXPECT_LT((odm.positions[0].position - Eigen::Vector3d(597730.7113, 6012375.7040, -3)).norm(),
+            1e-3)
+      << odm.positions[0].position.transpose();
+  EXPECT_THAT(odm.notes, testing::ElementsAre(HasSubstr("WGS 84 / UTM zone 33N (EPSG:32633)")));
+  // The same by the names of the columns, by Metashape's system, and by the numbers.
+  for (const char* text :
+       {"name,latitude,longitude,altitude\na.jpg,54.25,16.5,-3\nb.jpg,54.2501,16.5001,-4\n",
+        "#CoordinateSystem: GEOGCS[\"WGS 84\"]\n#Label,X/Longitude,Y/Latitude,Z/Altitude\n"
+        "a.jpg,16.5,54.25,-3\nb.jpg,16.5001,54.2501,-4\n",
+        "#Label,X/Longitude,Y/Latitude,Z/Altitude\na.jpg,16.5,54.25,-3\nb.jpg,16.5001,54.2501,-4\n"
+        "c.jpg,16.5,54.2501,-4\n"})
+    EXPECT_EQ(file_with(text).positions.at(0).position, odm.positions[0].position) << text;
+  const PositionFile south = file_with("EPSG:4326\na.jpg -178.2 -33.5 0\n");
+  EXPECT_LT((south.positions[0].position - Eigen::Vector3d(388534.3400, 6292636.4656, 0)).norm(),
+            1e-3)
+      << south.positions[0].position.transpose();
+
+  EXPECT_THAT(
+      error_of([] { positions_in("a,54.25,16.5,1\nb,54.2501,16.5001,1\nc,54.2501,16.5,1\n"); }),
+      HasSubstr("nothing says whether the latitude or the longitude is first"));
+  EXPECT_THAT(error_of([] { positions_in("EPSG:4314\na.jpg 16.5 54.25 1\n"); }),
+              HasSubstr("the positions are degrees (EPSG:4314); convert the positions"));
+  // Metres near the origin are metres.
+  EXPECT_EQ(told(file_with("a 1 2 3\nb 1.5 2 3\nc 1 2.5 3\n")), "a=(1,2,3)b=(1.5,2,3)c=(1,2.5,3)");
+}
+
+TEST(Positions, NameOtherFiles) {
+  EXPECT_THAT(error_of([] { positions_in("1 1 0 0 0 0.1 0.2 0.3 1 a.jpg\n1 2 3\n"); }),
+              HasSubstr("positions.txt:1: is a line of COLMAP's images.txt"));
+  EXPECT_THAT(error_of([] {
+                positions_in(
+                    std::string("\xFF\xFE"
+                                "a\0 \0",
+                                6));
+              }),
+              HasSubstr("positions.txt: is UTF-16; save it as UTF-8"));
 }
 
 }  // namespace

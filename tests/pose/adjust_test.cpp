@@ -145,8 +145,9 @@ TEST(Adjust, KnownPositionsHoldTheModel) {
   Bundle bundle = truth;
   AdjustOptions options;
   for (const std::size_t image : {std::size_t{0}, std::size_t{4}, std::size_t{11}})
-    options.positions.push_back(
-        {image, truth.images[image].pose.centre + Eigen::Vector3d(1, 2, 3) * 0.01, 1e-5});
+    options.positions.push_back({image,
+                                 truth.images[image].pose.centre + Eigen::Vector3d(1, 2, 3) * 0.01,
+                                 Eigen::Vector3d::Constant(1e-5)});
   adjust(bundle, options);
   for (const KnownPosition& known : options.positions)
     EXPECT_LT((bundle.images[known.image].pose.centre - known.metres).norm(), 1e-4);

@@ -113,7 +113,7 @@ TEST(LostKnowledge, OfPositionsIsThatTooFewAreLeft) {
   Bundle bundle = survey(camera_behind(flat_port()), {});
   AdjustOptions options;
   for (std::size_t i = 0; i < 4; ++i)
-    options.positions.push_back({i, bundle.images[i].pose.centre, 0.01});
+    options.positions.push_back({i, bundle.images[i].pose.centre, Eigen::Vector3d::Constant(0.01)});
   EXPECT_TRUE(lost_knowledge(bundle, options).empty());
   drop_image(bundle, 1);
   EXPECT_TRUE(lost_knowledge(bundle, options).empty());

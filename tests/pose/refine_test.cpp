@@ -150,7 +150,8 @@ TEST(BringToMetres, TakesTheScaleOfKnownPositions) {
   }
   AdjustOptions options;
   for (const std::size_t image : {std::size_t{0}, std::size_t{4}, std::size_t{11}})
-    options.positions.push_back({image, truth.images[image].pose.centre, 0.001});
+    options.positions.push_back(
+        {image, truth.images[image].pose.centre, Eigen::Vector3d::Constant(0.001)});
   bring_to_metres(bundle, options);
   for (std::size_t i = 0; i < truth.images.size(); ++i) {
     EXPECT_LT((bundle.images[i].pose.centre - truth.images[i].pose.centre).norm(), 1e-9);

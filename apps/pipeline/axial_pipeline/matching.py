@@ -44,7 +44,7 @@ def check_positions(given):
         count = len(list(itertools.islice(with_gps, LEAST_POSITIONS)))
         fail_if_few(count, images)
         return
-    positions.read(file, lambda name: (images / name).is_file())
+    positions.read(file, positions.names_in(images))
     if not colmap.has_option("spatial_matcher", "SpatialMatching.is_gps"):
         raise Failure("--matcher spatial: this version of COLMAP takes no positions from --scale-from "
                       "positions:FILE (COLMAP 3.8 does); choose another --matcher")
@@ -103,7 +103,7 @@ def prepare_positions(database, file):
             return
         names = [name for name, in connection.execute("SELECT name FROM images")]
         if file:
-            write_positions(connection, positions.read(file, set(names).__contains__))
+            write_positions(connection, positions.read(file, names))
         # COLMAP takes a missing position for a place near all others, and skips three zeros.
         connection.execute("UPDATE images SET prior_tx = 0, prior_ty = 0, prior_tz = 0 WHERE "
                            "prior_tx IS NULL OR prior_ty IS NULL OR prior_tz IS NULL")

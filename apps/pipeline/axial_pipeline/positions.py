@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The file of `--scale-from positions:FILE`, in which each line gives an image name and its camera
-position. Names are read as RefinePoses reads them."""
+position. Lines and names are read as RefinePoses reads them."""
 
 import math
 import pathlib
-import re
 
+from . import position_rows
 from .failure import Failure
 
 PREFIX = "positions:"
 LEAST_NAMES = 3  # fewer positions determine no scale and orientation
+PHOTOGRAPHS = {".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp", ".heic", ".dng", ".arw", ".cr2",
+               ".cr3", ".nef", ".orf", ".raf", ".rw2", ".gpr", ".raw"}
 
 
 def file_of(scale_from):
@@ -17,62 +19,94 @@ def file_of(scale_from):
     return scale_from[len(PREFIX):] if scale_from.startswith(PREFIX) else None
 
 
-def entry_before_end(text):
-    """NAME and (X, Y, Z) of `NAME X Y Z`; None if the text has another form."""
-    numbers = []
-    for _ in range(3):
-        words = text.rsplit(None, 1)
-        try:
-            numbers.insert(0, float(words[-1]))
-        except (IndexError, ValueError):
-            return None
-        text = words[0].rstrip() if len(words) == 2 else ""
-    return (text, tuple(numbers)) if text else None
+def without_extension(path, any_extension):
+    suffix = pathlib.PurePosixPath(path).suffix
+    return path[:-len(suffix)] if suffix and (any_extension or suffix.lower() in PHOTOGRAPHS) else path
 
 
-def entry_in(line, known):
-    """The image name in a line and its position; None if the line is a comment or empty. Three
-    numbers follow the name; without them, the position is None. A comment begins at a `#` at the
-    beginning or after a space, unless the name with this `#` is `known`. A name may be in quotes."""
-    line = line.strip()
-    ends = [len(line), *(i for i in reversed(range(len(line)))
-                         if line[i] == "#" and (i == 0 or line[i - 1].isspace()))]
-    entries = [entry for entry in (entry_before_end(line[:end]) for end in ends) if entry]
-    found = next((entry for entry in entries if known(entry[0])), None)
-    if found or not line or line[0] == "#":
-        return found
-    quoted = re.match(r'"((?:[^"]|"")*)"(\s.*)', line)
-    if quoted:
-        rest = entry_before_end("n" + quoted[2].split("#")[0])
-        return quoted[1].replace('""', '"'), rest[1] if rest and rest[0] == "n" else None
-    return entries[-1] if entries else (line, None)
+def path_ends(path):
+    """The ends of a path in whole folder and file names, the longest first."""
+    parts = path.split("/")
+    return ["/".join(parts[i:]) for i in range(len(parts)) if parts[i]]
 
 
-def entries_of(file, known):
-    """The number of each line with an image name, and entry_in() of this line."""
-    lines = pathlib.Path(file).read_text(encoding="utf-8-sig", errors="replace").splitlines()
-    entries = ((number, entry_in(line, known)) for number, line in enumerate(lines, 1))
-    return [(number, *entry) for number, entry in entries if entry]
+class Labels:
+    """Finds images by the labels that other programs give them: ImageLabels in
+    libs/io/cameras/image_positions.h."""
+
+    def __init__(self, names):
+        self.tables = []
+        for key in self.variants(True):
+            whole, ends = {}, {}
+            for name in names:
+                whole.setdefault(key(name), []).append(name)
+                for end in path_ends(key(name)):
+                    ends.setdefault(end, []).append(name)
+            self.tables.append((whole, ends))
+
+    @staticmethod
+    def variants(is_image):
+        short = lambda path: without_extension(path, is_image)
+        return (lambda path: path, str.lower, short, lambda path: short(path).lower())
+
+    def find(self, label):
+        """The images of the first rule that gives any, and the rank of this rule."""
+        slashes = label[2:] if label[1:3] in (":\\", ":/") else label
+        rank = 0
+        for (whole, ends), key in zip(self.tables, self.variants(False)):
+            for path in (label, slashes.replace("\\", "/")):
+                path = key(path.removeprefix("./"))
+                longest = lambda table: next((table[end] for end in path_ends(path) if end in table),
+                                             None)
+                for found in (whole.get(path), ends.get(path), longest(whole),
+                              longest(ends) if path.startswith(("/", "\\")) else None):
+                    if found:
+                        return found, rank
+                    rank += 1
+        return [], rank
 
 
-def read(file, known):
-    """The positions of the `known` images, by name. Fails at a line without a position."""
-    entries = entries_of(file, known)
-    for number, _, position in entries:
+def found_in(file, names):
+    """(line number, label, position, image) of each line; the image is None if no image has the
+    label. Fails if a label can be two images."""
+    labels = Labels(names)
+    entries, layout = position_rows.entries_of(pathlib.Path(file), lambda label: labels.find(label)[0])
+    found, ranks = [], {}
+    for line, label, position in entries:
+        images, rank = labels.find(label)
+        if len(images) > 1:
+            raise Failure(f"{file}:{line}: '{label}' can be {images[0]} or {images[1]}; give more of its "
+                          "path")
+        if images:
+            ranks[images[0]] = min(rank, ranks.get(images[0], rank))
+        found.append((line, label, position, images[0] if images else None, rank))
+    return [(line, label, position, image if image and rank == ranks[image] else None)
+            for line, label, position, image, rank in found], layout
+
+
+def read(file, names):
+    """The positions of the images `names`, by name. Fails at a line without a position."""
+    found, layout = found_in(file, names)
+    for line, _, position, _ in found:
         if position is None or not all(map(math.isfinite, position)):
-            raise Failure(f"{file}:{number}: must be NAME X Y Z with finite numbers")
-    return {name: position for _, name, position in entries if known(name)}
+            raise Failure(f"{file}:{line}: must be NAME X Y Z with finite numbers")
+    return position_rows.in_metres({image: position for _, _, position, image in found if image}, layout)
+
+
+def names_in(images):
+    """The names of the files below a folder, as COLMAP names them."""
+    return [path.relative_to(images).as_posix() for path in sorted(images.rglob("*")) if path.is_file()]
 
 
 def check(file, images):
     """Fails if the file names fewer than three photographs of the folder `images`. Prints how many
     names are no photographs: RefinePoses would skip a misspelt name like that of a photograph
     without a pose."""
-    names = [name for _, name, _ in entries_of(file, lambda name: (images / name).is_file())]
-    missing = [name for name in names if not (images / name).is_file()]
-    if len(names) - len(missing) < LEAST_NAMES:
-        raise Failure(f"{file}: {len(names) - len(missing)} of its names are photographs in "
+    found, _ = found_in(file, names_in(images))
+    missing = [label for _, label, _, image in found if image is None]
+    if len(found) - len(missing) < LEAST_NAMES:
+        raise Failure(f"{file}: {len(found) - len(missing)} of its names are photographs in "
                       f"{images}, at least {LEAST_NAMES} are needed")
     if missing:
-        print(f"{file}: {len(missing)} of {len(names)} names are not photographs in {images} and "
+        print(f"{file}: {len(missing)} of {len(found)} names are not photographs in {images} and "
               f"are ignored, {missing[0]} first", flush=True)

@@ -1,138 +1,167 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/cameras/position_file.h"
 
-#include <array>
-#include <optional>
+#include <algorithm>
+#include <cmath>
 
 #include "base/atomic_file.h"
 #include "private/bytes/text_reader.h"
+#include "private/cameras/position_layout.h"
+#include "private/cameras/position_row.h"
+#include "private/cameras/utm.h"
 
 namespace axial::io {
 namespace {
 
-// Removes and returns the quoted text at the beginning of `text`; nothing if the quote is not
-// closed.
-std::optional<std::string> take_quoted(std::string_view& text) {
-  std::string content;
-  for (std::size_t i = 1; i < text.size(); ++i) {
-    if (text[i] == '"') {
-      if (i + 1 == text.size() || text[i + 1] != '"') {
-        text.remove_prefix(i + 1);
-        return content;
-      }
-      ++i;
-    }
-    content += text[i];
-  }
-  return {};
+constexpr const char* kRemedy =
+    "convert the positions to a projected system in metres, for example in QGIS or by "
+    "gdaltransform";
+
+// The lines of the file. Spreadsheets on old systems end lines with a carriage return alone.
+std::string text_of(const std::filesystem::path& file) {
+  std::string text = read_file(file);
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    fail("{}: is UTF-16; save it as UTF-8", file.string());
+  if (text.find('\n') == std::string::npos) std::ranges::replace(text, '\r', '\n');
+  if (!text.ends_with('\n')) text += '\n';
+  return text;
 }
 
-// Removes and returns the last blank-separated token.
-std::string_view take_last_token(std::string_view& text) {
-  text = trimmed(text);
-  const std::size_t blank = text.find_last_of(kBlanks);
-  const std::size_t begin = blank == std::string_view::npos ? 0 : blank + 1;
-  const std::string_view token = text.substr(begin);
-  text = trimmed(text.substr(0, begin));
-  return token;
-}
-
-struct Reading {
-  std::string_view name;
-  std::array<std::string_view, 3> numbers;
+// The rows of a file before their units are known.
+struct Rows {
+  std::vector<PositionRow> rows;
+  std::vector<int> lines;
+  PositionLayout layout;
 };
 
-// Reads NAME X Y Z; nothing if the text ends in fewer than three numbers or the name is empty.
-std::optional<Reading> read_from_end(std::string_view text) {
-  Reading reading;
-  for (std::size_t i = 3; i-- > 0;) {
-    reading.numbers[i] = take_last_token(text);
-    if (!parse_number<double>(reading.numbers[i])) return {};
+Rows read_rows(const std::filesystem::path& file, const IsImage& is_image) {
+  const std::string text = text_of(file);
+  TextReader reader(text, file.string());
+  Rows found;
+  int number = 0;
+  while (const auto line = reader.line()) {
+    const std::string where = fmt::format("{}:{}", file.string(), ++number);
+    if (read_layout_line(line->rest(), where, found.layout)) continue;
+    auto row = read_position_row(line->rest(), found.layout, is_image, where);
+    if (!row) continue;
+    found.rows.push_back(*std::move(row));
+    found.lines.push_back(number);
   }
-  reading.name = text;
-  if (text.empty()) return {};
-  return reading;
+  return found;
 }
 
-// Positions where a comment may begin. The end of the text comes first, then the positions from
-// right to left.
-std::vector<std::size_t> possible_ends(std::string_view text) {
-  std::vector<std::size_t> ends{text.size()};
-  for (std::size_t i = text.size(); i-- > 0;)
-    if (text[i] == '#' && (i == 0 || kBlanks.find(text[i - 1]) != std::string_view::npos))
-      ends.push_back(i);
-  return ends;
-}
-
-// Reads a line that can be understood in several ways. Prefers the way whose name is an image,
-// otherwise the way with the longest comment.
-std::optional<Reading> best_reading(std::string_view text, const IsImage& is_image) {
-  std::optional<Reading> best;
-  for (const std::size_t end : possible_ends(text)) {
-    const auto reading = read_from_end(text.substr(0, end));
-    if (reading && is_image(std::string(reading->name))) return reading;
-    if (reading) best = reading;
+std::size_t drop_empty(Rows& found) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < found.rows.size(); ++i) {
+    if (found.rows[i].without_position) continue;
+    found.lines[kept] = found.lines[i];
+    if (kept != i) found.rows[kept] = std::move(found.rows[i]);
+    ++kept;
   }
-  return best;
+  const std::size_t dropped = found.rows.size() - kept;
+  found.rows.resize(kept);
+  found.lines.resize(kept);
+  return dropped;
 }
 
-Eigen::Vector3d position_of(const Reading& reading, const std::string& where) {
-  Eigen::Vector3d position;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto value = parse_finite<double>(reading.numbers[i]);
-    if (!value) fail("{}: '{}' is not finite", where, reading.numbers[i]);
-    position[static_cast<Eigen::Index>(i)] = *value;
+void turn_depths(Rows& found, std::vector<std::string>& notes) {
+  const auto is_below = [](const PositionRow& row) { return row.is_depth && row.position.z() > 0; };
+  if (std::ranges::none_of(found.rows, is_below)) return;
+  for (PositionRow& row : found.rows)
+    if (row.is_depth) row.position.z() = -row.position.z();
+  notes.push_back("depths are positive downwards: their opposites are the heights");
+}
+
+struct Box {
+  Eigen::Array2d low = Eigen::Array2d::Constant(INFINITY), high = -low;
+};
+
+Box box_of(const Rows& found) {
+  Box box;
+  for (const PositionRow& row : found.rows) {
+    const Eigen::Array2d place = row.position.head<2>().array();
+    box.low = box.low.min(place);
+    box.high = box.high.max(place);
   }
-  return position;
+  return box;
 }
 
-// Reads `"NAME" X Y Z` with an optional comment.
-std::optional<NamedPosition> parse_quoted(std::string_view text, const std::string& where) {
-  if (!text.starts_with('"')) return {};
-  const auto name = take_quoted(text);
-  if (!name) return {};
-  text = text.substr(0, text.find('#'));
-  const std::string with_name = "n " + std::string(text);
-  const auto reading = read_from_end(with_name);
-  if (!reading || reading->name != "n") return {};
-  return NamedPosition{*name, position_of(*reading, where)};
+// No camera takes photographs from three places within 1 cm, and degrees of a survey lie as close.
+bool are_like_degrees(const Rows& found) {
+  constexpr double kClose = 0.01, kFarFromZero = 1;
+  const Box box = box_of(found);
+  const Eigen::Array2d farthest = box.low.abs().max(box.high.abs());
+  return found.rows.size() >= 3 && ((box.high - box.low) < kClose).all() &&
+         (box.high - box.low).maxCoeff() > 0 && farthest.maxCoeff() > kFarFromZero &&
+         farthest.maxCoeff() <= 180 && farthest.minCoeff() <= 90;
 }
 
-bool is_comment(std::string_view text) {
-  return text.empty() || text.starts_with('#');
+// Puts the longitude first.
+void order_degrees(Rows& found, const std::string& file) {
+  if (found.layout.longitude_first) return;
+  const Box box = box_of(found);
+  const Eigen::Array2d farthest = box.low.abs().max(box.high.abs());
+  if (farthest.x() > 90) return;
+  if (farthest.y() <= 90)
+    fail(
+        "{}: the positions are degrees, but nothing says whether the latitude or the longitude is "
+        "first; name the columns in a first line such as label,longitude,latitude,altitude",
+        file);
+  for (PositionRow& row : found.rows) std::swap(row.position.x(), row.position.y());
 }
 
-std::optional<NamedPosition> parse(std::string_view text, const IsImage& is_image,
-                                   const std::string& where) {
-  const auto reading = best_reading(text, is_image);
-  if (reading && is_image(std::string(reading->name)))
-    return NamedPosition{std::string(reading->name), position_of(*reading, where), 0, true};
-  if (is_comment(text)) return {};
-  if (auto quoted = parse_quoted(text, where)) {
-    quoted->known = is_image(quoted->name);
-    return quoted;
+void convert_degrees(Rows& found, const std::string& file, std::vector<std::string>& notes) {
+  if (!found.layout.other_datum.empty())
+    fail("{}: the positions are degrees ({}); {}", file, found.layout.other_datum, kRemedy);
+  order_degrees(found, file);
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const PositionRow& row : found.rows)
+    mean += row.position.head<2>() / static_cast<double>(found.rows.size());
+  const UtmZone zone = utm_zone(mean.x(), mean.y());
+  for (std::size_t i = 0; i < found.rows.size(); ++i) {
+    const double longitude = found.rows[i].position.x(), latitude = found.rows[i].position.y();
+    if (std::abs(latitude) > 84 || std::abs(longitude - mean.x()) > 10)
+      fail("{}:{}: longitude {} and latitude {} are not in a UTM zone with the others; {}", file,
+           found.lines[i], longitude, latitude, kRemedy);
+    found.rows[i].position.head<2>() = to_utm(longitude, latitude, zone);
   }
-  if (!reading) fail("{}: must be NAME X Y Z", where);
-  return NamedPosition{std::string(reading->name), position_of(*reading, where)};
+  notes.push_back(fmt::format(
+      "longitude and latitude in degrees were converted to metres, {} (EPSG:{}); heights are "
+      "unchanged",
+      zone.name(), zone.epsg()));
+}
+
+void bring_to_metres(Rows& found, const std::string& file, std::vector<std::string>& notes) {
+  const PlaneUnit unit = found.layout.unit;
+  if (found.rows.empty()) return;
+  if (unit == PlaneUnit::degrees || (unit == PlaneUnit::unknown && are_like_degrees(found)))
+    convert_degrees(found, file, notes);
+}
+
+void note_accuracies(const Rows& found, std::vector<std::string>& notes) {
+  if (std::ranges::any_of(found.rows, &PositionRow::sigma_guessed))
+    notes.push_back(
+        "numbers behind the coordinates are taken as the accuracies of the plane coordinates and "
+        "of "
+        "the height");
 }
 
 }  // namespace
 
-std::vector<NamedPosition> read_positions(const std::filesystem::path& file,
-                                          const IsImage& is_image) {
-  std::string text = read_file(file);
-  if (!text.ends_with('\n')) text += '\n';
-  TextReader reader(text, file.string());
-  std::vector<NamedPosition> positions;
-  int number = 0;
-  while (const auto line = reader.line()) {
-    const std::string where = fmt::format("{}:{}", file.string(), ++number);
-    auto position = parse(line->rest(), is_image, where);
-    if (!position) continue;
-    position->line = number;
-    positions.push_back(*std::move(position));
+PositionFile read_positions(const std::filesystem::path& file, const IsImage& is_image) {
+  Rows found = read_rows(file, is_image);
+  PositionFile result;
+  if (const std::size_t empty = drop_empty(found))
+    result.notes.push_back(fmt::format("{} lines have no coordinates and are skipped", empty));
+  turn_depths(found, result.notes);
+  bring_to_metres(found, file.string(), result.notes);
+  note_accuracies(found, result.notes);
+  for (std::size_t i = 0; i < found.rows.size(); ++i) {
+    PositionRow& row = found.rows[i];
+    result.positions.push_back(
+        {std::move(row.name), row.position, found.lines[i], row.known, row.sigma});
   }
-  return positions;
+  return result;
 }
 
 std::vector<std::string> split_list(std::string_view text, const std::string& where) {

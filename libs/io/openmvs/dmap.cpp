@@ -21,6 +21,10 @@ namespace fs = std::filesystem;
 // Reads the beginning of a file, which is long enough for every header.
 std::string read_beginning(const fs::path& path) {
   constexpr std::streamsize kLongestHeader = 1 << 18;  // names have at most 65535 bytes
+  std::error_code ignored;
+  // To open a pipe would wait for its writer.
+  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored))
+    fail("{}: is not a regular file", path.string());
   std::ifstream in(path, std::ios::binary);
   std::string bytes(kLongestHeader, '\0');
   in.read(bytes.data(), kLongestHeader);

@@ -23,7 +23,8 @@ class SkippingReader {
     left_ = std::filesystem::file_size(path, error);
     buffer_.resize(error ? kSmallest : std::clamp(left_, kSmallest, kLargest));
     in_.rdbuf()->pubsetbuf(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-    in_.open(path, std::ios::binary);
+    // A pipe has no size, and to open it would wait for its writer.
+    if (!error) in_.open(path, std::ios::binary);
     if (error || !in_) fail();
   }
 

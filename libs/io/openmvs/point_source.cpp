@@ -80,8 +80,9 @@ std::optional<PlyCounts> count_ply(const std::filesystem::path& ply) {
   std::error_code error;
   PlyCounts counts;
   counts.file_bytes = std::filesystem::file_size(ply, error);
+  if (error) return {};  // also for a pipe, whose opening would wait for a writer
   std::ifstream in(ply, std::ios::binary);
-  if (error || !in) return {};
+  if (!in) return {};
   std::string bytes(kHeader, '\0');
   in.read(bytes.data(), kHeader);
   bytes.resize(static_cast<std::size_t>(in.gcount()));

@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The lines of a file of positions as other programs write them. The same rules as in
+libs/io/cameras/position_file.h, whose tests say more; RefinePoses names the mistakes of a file."""
+
+import dataclasses
+import math
+import re
+
+from .failure import Failure
+
+LABELS = {"label", "name", "image", "image name", "imagename", "filename", "file name", "file", "photo",
+          "photo name", "camera", "camera label", "picture", "sourcefile"}
+LONGITUDE = {"longitude", "lon", "long", "lng", "gps longitude", "gpslongitude"}
+LATITUDE = {"latitude", "lat", "gps latitude", "gpslatitude"}
+AXES = {**dict.fromkeys({"x", "easting", "east", "e", "geo x", "pos x", "coordinate1", *LONGITUDE}, "x"),
+        **dict.fromkeys({"y", "northing", "north", "n", "geo y", "pos y", "coordinate2", *LATITUDE}, "y"),
+        **dict.fromkeys({"z", "altitude", "alt", "height", "elevation", "h", "up", "geo z", "pos z",
+                         "rl", "gps altitude", "gpsaltitude"}, "z"), "depth": "depth"}
+CLOSE = 0.01  # degrees of a survey lie as close; cameras in metres do not
+
+
+@dataclasses.dataclass
+class Layout:
+    delimiter: str = ""  # "": blanks, or not stated
+    columns: tuple = ()
+    degrees: bool = None  # None: not stated
+
+
+def number(field):
+    """A number, in which the decimal mark may be a comma; None if it is none."""
+    try:
+        if "_" not in field:
+            return float(field)
+    except ValueError:
+        if field.count(",") == 1 and "." not in field:
+            return number(field.replace(",", "."))
+    return None
+
+
+def split_fields(text, delimiter):
+    """The fields between delimiters, which may be in double quotes."""
+    fields, field, quoted, i = [], "", False, 0
+    while i <= len(text):
+        sign = text[i:i + 1]
+        if sign == "" or (sign == delimiter and not quoted):
+            fields.append(field.strip())
+            field = ""
+        elif sign != '"' or (not quoted and field.strip()):
+            field += sign
+        elif quoted and text[i + 1:i + 2] == '"':
+            field += sign
+            i += 1
+        else:
+            quoted = not quoted
+        i += 1
+    return [] if quoted else fields
+
+
+def column_of(field):
+    words = re.sub(r"[(\[][^)\]]*[)\]]?", "", field.lower())
+    words = " ".join(re.sub(r'[_\-."#]', " ", words).split())
+    if words in LABELS:
+        return "label"
+    if re.search("accuracy|sigma|std|acc ", words):
+        return ""
+    return next((AXES[part.strip()] for part in words.split("/") if part.strip() in AXES), "")
+
+
+def header_of(line, layout):
+    """The delimiter and the columns that a line names; None if it is no header."""
+    text = line.lstrip("#/ \t")
+    for delimiter in [layout.delimiter] if layout.delimiter else [";", "\t", ",", ""]:
+        fields = split_fields(text, delimiter) if delimiter else text.split()
+        if any(number(field) is not None for field in fields):
+            continue
+        columns = []
+        for field in fields:
+            column = column_of(field)
+            again = column in columns or (column in ("z", "depth") and {"z", "depth"} & {*columns})
+            columns.append("" if again else column)
+        if columns and "label" not in columns and not columns[0]:
+            columns[0] = "label"
+        if {"label", "x", "y"} <= {*columns} and {"z", "depth"} & {*columns}:
+            return delimiter, tuple(columns), fields
+    return None
+
+
+def read_layout_line(line, layout):
+    """Whether the line names the delimiter, the columns or the coordinate system."""
+    small = line.lower()
+    if re.fullmatch("sep=.", small):
+        layout.delimiter = line[4]
+    elif small.startswith("#") and "coordinatesystem:" in small:
+        layout.degrees = "geogcs" in small and "projcs" not in small
+    elif re.fullmatch(r"epsg:\s*\d+", small):
+        layout.degrees = re.fullmatch(r"epsg:\s*4\d{3}", small) is not None
+    elif small.startswith("+proj="):
+        layout.degrees = small.startswith(("+proj=longlat", "+proj=latlong"))
+    elif re.fullmatch(r"wgs ?84( utm .*)?", small):
+        layout.degrees = "utm" not in small
+    else:
+        header = header_of(line, layout)
+        if header is None:
+            return False
+        layout.delimiter, layout.columns, fields = header
+        plain = {re.sub(r"[(\[].*", "", field).strip(' "#').lower() for field in fields}
+        if plain & (LONGITUDE | LATITUDE):
+            layout.degrees = True
+    return True
+
+
+def ends_of(line):
+    """Where a comment may begin; the end of the line first, then from right to left."""
+    return [len(line), *(i for i in reversed(range(len(line)))
+                         if line[i] == "#" and (i == 0 or line[i - 1].isspace()))]
+
+
+def entry_before_end(text):
+    """NAME and (X, Y, Z) of `NAME X Y Z`; None if the text has another form."""
+    words = text.rsplit(None, 3)
+    numbers = [number(word) if "," not in word else None for word in words[1:]]
+    return (words[0], tuple(numbers)) if len(words) == 4 and None not in numbers else None
+
+
+def are_numbers(fields):
+    """Whether the fields are at least three numbers, and nothing else up to the eighth."""
+    count = next((i for i, field in enumerate(fields) if number(field) is None), len(fields))
+    return count >= 8 or 3 <= count == len(fields)
+
+
+def position_of(fields):
+    """None if the number of fields does not tell what they are."""
+    return None if len(fields) in (4, 7) else tuple(number(field) for field in fields[:3])
+
+
+def entry_from_start(line, known):
+    """The longest known name at the beginning, and the numbers behind it."""
+    text = line[:ends_of(line)[-1]]
+    for blank in reversed([match.start() for match in re.finditer(r"\s+", text)][:64]):
+        if are_numbers(text[blank:].split()) and known(text[:blank]):
+            return text[:blank], position_of(text[blank:].split())
+    return None
+
+
+def delimited_entry(line, layout, known):
+    """NAME;X;Y;Z between any delimiters. The position is () if its fields are empty."""
+    entries = []
+    for end in ends_of(line):
+        for delimiter in [layout.delimiter] if layout.delimiter else [";", "\t", ","]:
+            name, *fields = split_fields(line[:end].strip(), delimiter) or [""]
+            while len(fields) > 3 and not fields[-1]:
+                fields.pop()
+            if name and len(fields) >= 3 and not any(fields):
+                entries.append((name, ()))
+            elif name and are_numbers(fields):
+                entries.append((name, position_of(fields)))
+    return next((entry for entry in entries if known(entry[0])), entries[0] if entries else None)
+
+
+def entry_by_header(line, layout):
+    """The name and the position in the columns of the header; the position is () if its fields are
+    empty. None if the line has another form."""
+    if layout.delimiter:
+        fields = split_fields(line, layout.delimiter)
+    else:
+        fields = line[:ends_of(line)[-1]].split()
+        label, more = layout.columns.index("label"), len(fields) - len(layout.columns)
+        if more > 0:
+            fields[label:label + more + 1] = [" ".join(fields[label:label + more + 1])]
+    values = dict(zip(layout.columns, fields))
+    third = "depth" if "depth" in layout.columns else "z"
+    place = [values.get(axis, "") for axis in ("x", "y", third)]
+    if not values.get("label") or not any(place):
+        return (values["label"], ()) if values.get("label") else None
+    numbers = tuple(map(number, place))
+    return None if None in numbers else (values["label"], numbers)
+
+
+def entry_in(line, known, layout=None):
+    """The image name in a line and its position; None if the line is a comment or empty. The position
+    is None if the line has another form, and () if it has empty fields for it. A comment begins at a
+    `#` at the beginning or after a space, unless the name with this `#` is `known`."""
+    layout, line = layout or Layout(), line.strip()
+    if layout.columns and line and line[0] != "#":
+        entry = entry_by_header(line, layout)
+        if entry or layout.delimiter:
+            return entry or (line, None)
+    entries = [entry for entry in (entry_before_end(line[:end]) for end in ends_of(line)) if entry]
+    found = next((entry for entry in entries if known(entry[0])), None)
+    if found or not line or line[0] == "#":
+        return found
+    quoted = re.match(r'"((?:[^"]|"")*)"(\s.*)', line)
+    if quoted:
+        fields = quoted[2].split("#")[0].split()
+        return quoted[1].replace('""', '"'), position_of(fields) if are_numbers(fields) else None
+    found, fields = entry_from_start(line, known), delimited_entry(line, layout, known)
+    if not found and fields and (not entries or known(fields[0])):
+        return fields
+    return found or (entries[-1] if entries else (line, None))
+
+
+def lines_of(file):
+    data = file.read_bytes()
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise Failure(f"{file}: is UTF-16; save it as UTF-8")
+    return data.decode("utf-8-sig", errors="replace").splitlines()
+
+
+def entries_of(file, known):
+    """(line number, name, position) of all lines with a name, and the layout. Lines without
+    coordinates are left out; the position of a line of another form is None."""
+    layout, entries = Layout(), []
+    for line_number, line in enumerate(lines_of(file), 1):
+        if read_layout_line(line.strip(), layout):
+            continue
+        entry = entry_in(line, known, layout)
+        if entry and entry[1] != ():
+            entries.append((line_number, *entry))
+    return entries, layout
+
+
+def in_metres(positions, layout):
+    """Longitude and latitude in degrees as metres, up to half a percent: enough to tell neighbours.
+    `positions`: by name."""
+    if len(positions) < 3 and not layout.degrees:
+        return positions
+    xs, ys = ([place[axis] for place in positions.values()] for axis in (0, 1))
+    extent = max(max(xs) - min(xs), max(ys) - min(ys)) if positions else 0
+    alike = layout.degrees is None and 0 < extent < CLOSE and 1 < max(map(abs, xs + ys)) <= 180
+    if not layout.degrees and not alike:
+        return positions
+    across = 111320 * math.cos(math.radians(ys[0]))
+    return {name: (x * across, y * 110950, z) for name, (x, y, z) in positions.items()}

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "private/cameras/position_layout.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <initializer_list>
+
+#include "base/split.h"
+#include "private/bytes/text_reader.h"
+
+namespace axial::io {
+namespace {
+
+using Words = std::initializer_list<std::string_view>;
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+bool has(Words words, std::string_view word) {
+  return std::ranges::find(words, word) != words.end();
+}
+
+bool contains(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+// The name of a column in plain words, and its unit.
+struct ColumnName {
+  std::string words;  // in small letters, one blank between two words
+  std::string unit;   // the text in brackets
+};
+
+ColumnName column_name(std::string_view field) {
+  ColumnName name;
+  std::string text = lower(field);
+  const std::size_t open = text.find_first_of("([");
+  if (open != std::string::npos) {
+    const std::size_t close = std::min(text.find_first_of(")]", open), text.size());
+    name.unit = trimmed(std::string_view(text).substr(open + 1, close - open - 1));
+    text = text.substr(0, open) + (close < text.size() ? text.substr(close + 1) : "");
+  }
+  for (char& c : text)
+    if (c == '_' || c == '-' || c == '.' || c == '"' || c == '#') c = ' ';
+  std::string_view rest = text;
+  for (std::string_view word = take_token(rest); !word.empty(); word = take_token(rest))
+    name.words += (name.words.empty() ? "" : " ") + std::string(word);
+  return name;
+}
+
+bool is_longitude(std::string_view word) {
+  return has({"longitude", "lon", "long", "lng", "gps longitude", "gpslongitude"}, word);
+}
+
+bool is_latitude(std::string_view word) {
+  return has({"latitude", "lat", "gps latitude", "gpslatitude"}, word);
+}
+
+Column coordinate(std::string_view word) {
+  if (is_longitude(word) ||
+      has({"x", "easting", "east", "e", "geo x", "pos x", "coordinate1"}, word))
+    return Column::x;
+  if (is_latitude(word) ||
+      has({"y", "northing", "north", "n", "geo y", "pos y", "coordinate2"}, word))
+    return Column::y;
+  if (has({"z", "altitude", "alt", "height", "elevation", "h", "up", "geo z", "pos z", "rl",
+           "gps altitude", "gpsaltitude"},
+          word))
+    return Column::z;
+  if (has({"depth"}, word)) return Column::depth;
+  return Column::other;
+}
+
+// A column such as "accuracy z" or "accuracy horz". Metashape's "x error" is a residual.
+Column accuracy(std::string_view words) {
+  std::string text(words);
+  std::ranges::replace(text, '/', ' ');
+  bool across = false, up = false;
+  std::string_view rest = text;
+  for (std::string_view word = take_token(rest); !word.empty(); word = take_token(rest)) {
+    const Column axis = coordinate(word);
+    if (axis == Column::x || axis == Column::y || has({"xy", "horz", "horizontal", "h"}, word))
+      across = true;
+    else if (axis == Column::z || has({"vert", "vertical", "v"}, word))
+      up = true;
+  }
+  if (across == up) return Column::sigma;
+  return across ? Column::sigma_across : Column::sigma_up;
+}
+
+Column column_of(const std::string& words) {
+  if (has({"label", "name", "image", "image name", "imagename", "filename", "file name", "file",
+           "photo", "photo name", "camera", "camera label", "picture", "sourcefile"},
+          words))
+    return Column::label;
+  for (const char* word : {"accuracy", "sigma", "std", "acc "})
+    if (contains(words, word))
+      return contains(words, "yaw") || contains(words, "deg") ? Column::other : accuracy(words);
+  for (const std::string_view part : split(words, '/'))
+    if (const Column column = coordinate(trimmed(part)); column != Column::other) return column;
+  return Column::other;
+}
+
+// Whether a name leaves no other meaning than degrees: "longitude", but not "x/longitude".
+bool means_degrees(const ColumnName& name) {
+  return is_longitude(name.words) || is_latitude(name.words) || name.unit.starts_with("deg") ||
+         name.unit == "°";
+}
+
+bool names_degrees(const std::string& words) {
+  return std::ranges::any_of(split(words, '/'), [](std::string_view part) {
+    return is_longitude(trimmed(part)) || is_latitude(trimmed(part));
+  });
+}
+
+bool is_known_unit(const std::string& unit) {
+  return has({"", "m", "metre", "metres", "meter", "meters", "°", "decimal degrees"}, unit) ||
+         unit.starts_with("deg");
+}
+
+bool is_coordinate(Column column) {
+  return column == Column::x || column == Column::y || column == Column::z ||
+         column == Column::depth;
+}
+
+// Clears all columns after the first of each kind.
+void keep_first(std::vector<Column>& columns) {
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const auto end = columns.begin() + static_cast<std::ptrdiff_t>(i);
+    const bool second_height =
+        (columns[i] == Column::z && std::find(columns.begin(), end, Column::depth) != end) ||
+        (columns[i] == Column::depth && std::find(columns.begin(), end, Column::z) != end);
+    const bool again =
+        columns[i] != Column::sigma_across && std::find(columns.begin(), end, columns[i]) != end;
+    if (second_height || again) columns[i] = Column::other;
+  }
+}
+
+bool has_column(const std::vector<Column>& columns, Column column) {
+  return std::ranges::find(columns, column) != columns.end();
+}
+
+// The columns of a header line; nothing if the fields are none.
+std::optional<std::vector<Column>> columns_of(const std::vector<ColumnName>& names) {
+  std::vector<Column> columns;
+  for (const ColumnName& name : names) {
+    if (parse_number<double>(name.words)) return {};
+    columns.push_back(column_of(name.words));
+  }
+  keep_first(columns);
+  if (!has_column(columns, Column::label) && !columns.empty() && columns[0] == Column::other)
+    columns[0] = Column::label;
+  for (const Column needed : {Column::label, Column::x, Column::y})
+    if (!has_column(columns, needed)) return {};
+  if (!has_column(columns, Column::z) && !has_column(columns, Column::depth)) return {};
+  return columns;
+}
+
+std::vector<ColumnName> column_names(std::string_view text, char delimiter) {
+  std::vector<ColumnName> names;
+  if (delimiter) {
+    const auto fields = split_fields(text, delimiter);
+    if (fields)
+      for (const std::string& field : *fields) names.push_back(column_name(field));
+    return names;
+  }
+  for (std::string_view word = take_token(text); !word.empty(); word = take_token(text))
+    names.push_back(column_name(word));
+  return names;
+}
+
+// Several delimiters may occur, as in "Label,X (m),Y (m)": the first that gives a header counts.
+bool read_header(std::string_view text, const std::string& where, PositionLayout& layout) {
+  while (text.starts_with('#') || text.starts_with('/')) text = trimmed(text.substr(1));
+  for (const char delimiter : {';', '\t', ',', '\0'}) {
+    if (layout.delimiter && delimiter != layout.delimiter) continue;
+    const std::vector<ColumnName> names = column_names(text, delimiter);
+    auto columns = columns_of(names);
+    if (!columns) continue;
+    bool degrees = false;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (!is_coordinate((*columns)[i])) continue;
+      if (!is_known_unit(names[i].unit))
+        fail("{}: column '{}' is in '{}', but positions must be in metres", where, names[i].words,
+             names[i].unit);
+      degrees |= means_degrees(names[i]);
+      layout.longitude_first |= names_degrees(names[i].words);
+    }
+    if (degrees) layout.unit = PlaneUnit::degrees;
+    layout.delimiter = delimiter;
+    layout.columns = *std::move(columns);
+    return true;
+  }
+  return false;
+}
+
+void refuse_feet(const std::string& text, const std::string& where) {
+  for (const char* word : {"foot", "feet", "+units=ft", "+units=us-ft", "us-ft", "+to_meter"})
+    if (contains(text, word))
+      fail("{}: the unit of the coordinates is not the metre; convert the positions to metres",
+           where);
+}
+
+void set_degrees(std::string_view name, bool like_wgs84, PositionLayout& layout) {
+  layout.unit = PlaneUnit::degrees;
+  layout.longitude_first = true;
+  if (!like_wgs84) layout.other_datum = name;
+}
+
+// Codes from 4001 to 4999 are geographic (degrees), except a few geocentric ones (metres).
+void read_epsg(std::string_view text, int code, PositionLayout& layout) {
+  constexpr std::array kGeocentric{4978, 4936, 4920, 4919};
+  constexpr std::array kLikeWgs84{4326, 4979, 4258, 4937, 4269, 4759, 4152};
+  if (code > 4000 && code < 5000 && std::ranges::find(kGeocentric, code) == kGeocentric.end())
+    set_degrees(text, std::ranges::find(kLikeWgs84, code) != kLikeWgs84.end(), layout);
+  else
+    layout.unit = PlaneUnit::metres;
+}
+
+// The line of OpenDroneMap's geo.txt.
+bool read_projection(std::string_view text, const std::string& where, PositionLayout& layout) {
+  const std::string words = lower(text);
+  if (words.starts_with("epsg:")) {
+    const auto code = parse_number<int>(trimmed(std::string_view(words).substr(5)));
+    if (!code) return false;
+    read_epsg(text, *code, layout);
+    return true;
+  }
+  if (words.starts_with("+proj=")) {
+    refuse_feet(words, where);
+    layout.unit = PlaneUnit::metres;
+    if (words.starts_with("+proj=longlat") || words.starts_with("+proj=latlong"))
+      set_degrees(text, contains(words, "wgs84") || contains(words, "grs80"), layout);
+    return true;
+  }
+  if (words == "wgs84" || words == "wgs 84") {
+    set_degrees(text, true, layout);
+    return true;
+  }
+  if (!words.starts_with("wgs84 utm ") && !words.starts_with("wgs 84 utm ")) return false;
+  layout.unit = PlaneUnit::metres;
+  return true;
+}
+
+bool read_coordinate_system(std::string_view text, const std::string& where,
+                            PositionLayout& layout) {
+  const std::string words = lower(text);
+  if (!text.starts_with('#') || !contains(words, "coordinatesystem:")) return false;
+  refuse_feet(words, where);
+  if (contains(words, "projcs") || contains(words, "local_cs") || contains(words, "geoccs"))
+    layout.unit = PlaneUnit::metres;
+  else if (contains(words, "geogcs"))
+    set_degrees("another datum than WGS 84",
+                contains(words, "wgs 84") || contains(words, "wgs84") ||
+                    contains(words, "etrs89") || contains(words, "nad83"),
+                layout);
+  return true;
+}
+
+}  // namespace
+
+std::optional<std::string> take_quoted(std::string_view& text) {
+  std::string content;
+  for (std::size_t i = 1; i < text.size(); ++i) {
+    if (text[i] == '"') {
+      if (i + 1 == text.size() || text[i + 1] != '"') {
+        text.remove_prefix(i + 1);
+        return content;
+      }
+      ++i;
+    }
+    content += text[i];
+  }
+  return {};
+}
+
+std::optional<std::vector<std::string>> split_fields(std::string_view text, char delimiter) {
+  std::vector<std::string> fields;
+  std::string field;
+  bool quoted = false;
+  for (std::size_t i = 0; i <= text.size(); ++i) {
+    const bool end = i == text.size();
+    if (end || (!quoted && text[i] == delimiter)) {
+      if (quoted) return {};
+      fields.emplace_back(trimmed(field));
+      field.clear();
+    } else if (text[i] != '"' || (!quoted && !trimmed(field).empty())) {
+      field += text[i];
+    } else if (quoted && i + 1 < text.size() && text[i + 1] == '"') {
+      field += text[i++];
+    } else {
+      quoted = !quoted;
+    }
+  }
+  return fields;
+}
+
+bool read_layout_line(std::string_view text, const std::string& where, PositionLayout& layout) {
+  if (text.size() == 5 && lower(text.substr(0, 4)) == "sep=") {
+    layout.delimiter = text[4];
+    return true;
+  }
+  return read_coordinate_system(text, where, layout) || read_projection(text, where, layout) ||
+         read_header(text, where, layout);
+}
+
+}  // namespace axial::io
