@@ -131,6 +131,34 @@ class Scales(ProgramTest):
             self.assertEqual(self.report("out")["unused"],
                              [f"--scale-from: the position of {spoiled}"])
 
+    def with_positions(self, out, lines, *arguments):
+        write(self.path("known.csv"), "\n".join(lines) + "\n")
+        return self.command(self.sparse, out, "--scale-from", "positions:" + self.path("known.csv"), *arguments)
+
+    def test_positions_of_another_program(self):
+        """Accuracies in the file replace --scale-sigma."""
+        plain = [f"{name} {x!r} {y!r} {z!r}" for name, (x, y, z) in self.centres.items()]
+        self.succeeds(*self.with_positions("plain", plain, "--scale-sigma", 0.05))
+        self.succeeds(*self.with_positions("metashape", ["#Label,X/Easting,Y/Northing,Z/Altitude,Accuracy_(m)"] + [
+            f"{name.rsplit('.')[0]},{x!r},{y!r},{z!r},0.05" for name, (x, y, z) in self.centres.items()]))
+        for name in files_below(self.path("plain")):
+            self.assertEqual(read(self.path("metashape", name)), read(self.path("plain", name)), name)
+
+    def test_wrong_positions(self):
+        known = {name: list(place) for name, place in self.centres.items()}
+        known[self.names[2]][0] += 50
+        lines = [" ".join([name, *map(repr, place)]) for name, place in known.items()]
+        said = self.succeeds(*self.with_positions("out", lines)).stdout
+        expected = f"the position of {self.names[2]} is 50 m from where the 4 positions that fit together put it"
+        self.assertIn(f"warning: {self.path('known.csv')}: {expected}", said)
+        self.assertIn(f"--scale-from: {expected}", self.report("out")["unused"][0])
+        refined = centres_of(self.path("out", "sparse"))
+        # The pixels alone determine the centre that has no position.
+        for name in self.names:
+            self.assertLess(math.dist(refined[name], self.centres[name]), 0.01)
+        self.refuses("fit the mirror image of the cameras", *self.with_positions("mirrored", [
+            f"{name} {x!r} {y!r} {-z!r}" for name, (x, y, z) in self.centres.items()]))
+
     def test_what_the_model_does_not_have(self):
         write(self.path("lost.txt"), "lost1.jpg 1 0 0\nlost2.jpg 2 0 1\nlost3.jpg 3 0 0\n")
         for known in (f"images:{self.names[0]},lost.jpg,1", "points:99999999,1,1",

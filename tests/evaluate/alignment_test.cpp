@@ -137,6 +137,32 @@ TEST(AlignCentres, ReportsResiduals) {
   EXPECT_NEAR(alignment.rms, 0.1, 0.005);
 }
 
+TEST(AlignCentres, LeavesOutACentreThatDoesNotFit) {
+  std::mt19937 random(5);
+  std::vector<Pose> poses;
+  for (int i = 0; i < 8; ++i) poses.push_back({random_rotation(random), random_vector(random, 2)});
+  io::ColmapModel reference = model_of(poses);
+  const io::ColmapModel model = reference;
+  reference.images[3].pose.centre.x() += 50;
+  const CentreAlignment alignment = align_centres(model, reference);
+  EXPECT_THAT(alignment.outliers, ::testing::ElementsAre(::testing::HasSubstr("0003.jpg is 50 m")));
+  EXPECT_LT(alignment.rms_of_fitting, 1e-9);
+  EXPECT_LT(alignment.largest, 1e-9);
+  EXPECT_NEAR(alignment.residuals[3], 50, 1e-9);
+  EXPECT_NEAR(alignment.similarity.scale, 1, 1e-9);
+}
+
+// Heights that count downwards, as depths do.
+TEST(FitSimilarity, RefusesMirrorImages) {
+  std::mt19937 random(6);
+  std::vector<Eigen::Vector3d> source, target;
+  for (int i = 0; i < 8; ++i) {
+    source.push_back(random_vector(random, 2));
+    target.emplace_back(source.back().x(), source.back().y(), -source.back().z());
+  }
+  EXPECT_THROW(fit_similarity(source, target), Error);
+}
+
 TEST(AlignCentres, NeedsThreeCommonImages) {
   std::vector<Pose> poses(3);
   poses[1].centre = {1, 0, 0};
