@@ -50,7 +50,9 @@ void declare_moves(OptionList& list, Options& options, Texts& texts) {
            "text file with 12 or 16 numbers: the similarity as a matrix, row by row, from world to "
            "world coordinates")
       .add("positions", &texts.positions,
-           "text file with the known positions of camera centres: a line NAME X Y Z for an image")
+           "text file with the known positions of camera centres: a line NAME X Y Z for an image, "
+           "or a "
+           "file of Metashape, Pix4D, OpenDroneMap or a spreadsheet")
       .add_switch("rigid", &options.rigid, "align without a change of scale")
       .add_switch("scale-ports", &options.scale_ports,
                   "a change of scale also changes the lengths of the ports that cameras carry. "
