@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/files_in.h"
 #include "base/log.h"
+#include "base/naming.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
 #include "base/unused_input.h"
@@ -191,9 +192,11 @@ Refined refine(const Options& options, pose::ColmapBundle& refined) {
            pose::median_distance(refined.bundle));
   pose::Bundle before = refined.bundle;
   ProgressLines lines;
-  pose::RefineReport report = pose::refine(
-      refined.bundle, options.refine, [&](const std::string& line) { lines.log(line); },
-      [&](const std::string& line) { lines.log_if_due(line); });
+  pose::RefineReport report = naming(options.model, [&] {
+    return pose::refine(
+        refined.bundle, options.refine, [&](const std::string& line) { lines.log(line); },
+        [&](const std::string& line) { lines.log_if_due(line); });
+  });
   return {std::move(before), std::move(report)};
 }
 
