@@ -118,12 +118,12 @@ def command_of(program, binaries, options):
     return [str(binaries / program.name), *options]
 
 
-def is_named(line, program, options, files):
+def is_named(line, program, options, folder):
     """Whether an error names a file, an option or a value of the command."""
     values = [word.split("=", 1)[-1] for word in options]
     words = {os.path.basename(word) for word in values} | set(values) | {
-        os.path.basename(file) for file in files} | set(program.may_name)
-    return "--" in line or "command line" in line or any(word and word in line for word in words)
+        os.path.basename(file) for file in folder.kept} | set(program.may_name)
+    return "--" in line or "command line" in line or str(folder.path.parent) in line or any(word and word in line for word in words)
 
 
 def faults_of(program, folder, outcome, options, damaged, long_allowed):
@@ -140,7 +140,7 @@ def faults_of(program, folder, outcome, options, damaged, long_allowed):
     if code == 1:
         if said.count("\n") != 1 or not said.endswith("\n"):
             faults.append(f"{said.count(chr(10))} lines on standard error")
-        elif not is_named(said, program, options, folder.kept):
+        elif not is_named(said, program, options, folder):
             faults.append("names no file and no option")
         half = [file for file in changed if not re.fullmatch(program.kept_on_error, file)]
         if half:
