@@ -123,7 +123,8 @@ def is_named(line, program, options, folder):
     values = [word.split("=", 1)[-1] for word in options]
     words = {os.path.basename(word) for word in values} | set(values) | {
         os.path.basename(file) for file in folder.kept} | set(program.may_name)
-    return "--" in line or "command line" in line or str(folder.path.parent) in line or any(word and word in line for word in words)
+    words |= {"--", "command line", str(folder.path.parent)}
+    return any(word and word in line for word in words)
 
 
 def faults_of(program, folder, outcome, options, damaged, long_allowed):

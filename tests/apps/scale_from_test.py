@@ -133,14 +133,17 @@ class Scales(ProgramTest):
 
     def with_positions(self, out, lines, *arguments):
         write(self.path("known.csv"), "\n".join(lines) + "\n")
-        return self.command(self.sparse, out, "--scale-from", "positions:" + self.path("known.csv"), *arguments)
+        return self.command(self.sparse, out, "--scale-from", "positions:" + self.path("known.csv"),
+                            *arguments)
 
     def test_positions_of_another_program(self):
         """Accuracies in the file replace --scale-sigma."""
         plain = [f"{name} {x!r} {y!r} {z!r}" for name, (x, y, z) in self.centres.items()]
         self.succeeds(*self.with_positions("plain", plain, "--scale-sigma", 0.05))
-        self.succeeds(*self.with_positions("metashape", ["#Label,X/Easting,Y/Northing,Z/Altitude,Accuracy_(m)"] + [
-            f"{name.rsplit('.')[0]},{x!r},{y!r},{z!r},0.05" for name, (x, y, z) in self.centres.items()]))
+        lines = ["#Label,X/Easting,Y/Northing,Z/Altitude,Accuracy_(m)"] + [
+            f"{name.rsplit('.')[0]},{x!r},{y!r},{z!r},0.05"
+            for name, (x, y, z) in self.centres.items()]
+        self.succeeds(*self.with_positions("metashape", lines))
         for name in files_below(self.path("plain")):
             self.assertEqual(read(self.path("metashape", name)), read(self.path("plain", name)), name)
 
@@ -149,7 +152,8 @@ class Scales(ProgramTest):
         known[self.names[2]][0] += 50
         lines = [" ".join([name, *map(repr, place)]) for name, place in known.items()]
         said = self.succeeds(*self.with_positions("out", lines)).stdout
-        expected = f"the position of {self.names[2]} is 50 m from where the 4 positions that fit together put it"
+        expected = (f"the position of {self.names[2]} is 50 m from where the 4 positions that fit "
+                    "together put it")
         self.assertIn(f"warning: {self.path('known.csv')}: {expected}", said)
         self.assertIn(f"--scale-from: {expected}", self.report("out")["unused"][0])
         refined = centres_of(self.path("out", "sparse"))
