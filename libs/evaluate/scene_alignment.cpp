@@ -112,6 +112,8 @@ std::optional<std::string> may_be_mirrored(const Scene& scene, std::span<const s
                                            std::span<const Eigen::Vector3d> positions,
                                            bool with_scale, const SceneAlignment& alignment) {
   constexpr double kUp = 0.7071;  // sine of 45 degrees
+  // Cameras that are hardly turned are in the frame of the positions already.
+  if (Eigen::AngleAxisd(alignment.similarity.rotation).angle() < 0.1) return {};
   Eigen::Matrix3Xd from(3, images.size()), to(3, images.size());
   for (std::size_t k = 0; k < images.size(); ++k) {
     const Pose& pose = scene.images[images[k]].pose;
