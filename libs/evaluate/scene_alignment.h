@@ -61,8 +61,9 @@ SceneAlignment align_to_positions(const Scene& scene, std::span<const std::size_
 
 // Warns of positions that may be those of a mirrored frame, although the fit cannot tell, because
 // all positions are nearly on a plane: returns a line if the mirror image of the cameras fits as
-// well, and all moved cameras look up, more than 45 degrees above the horizon of the axis z.
-// `alignment`: the result of align_to_positions() for the same arguments.
+// well, the alignment turns the cameras, and all moved cameras look up, more than 45 degrees above
+// the horizon of the axis z. `alignment`: the result of align_to_positions() for the same
+// arguments.
 std::optional<std::string> may_be_mirrored(const Scene& scene, std::span<const std::size_t> images,
                                            std::span<const Eigen::Vector3d> positions,
                                            bool with_scale, const SceneAlignment& alignment);

@@ -246,6 +246,8 @@ class Positions(Transform):
         said = self.align(self.lines([(y, -x, 0) for x, y, _ in self.known]))
         self.assertNotIn("look up", said)
         said = self.align(self.lines([(x, y, -3) for x, y, _ in level]))
+        self.assertNotIn("look up", said)  # the frame of the scene
+        said = self.align(self.lines([(y, -x, -3) for x, y, _ in level]))
         self.assertIn("warning: " + self.path("known.csv") + ": all cameras look up", said)
 
 
