@@ -69,6 +69,28 @@ class ClosedStreams(TinyScene):
             self.assertEqual(ended.returncode, 1, closed)
 
 
+class Pipes(TinyScene):
+    def test_a_pipe_in_the_place_of_a_file_is_refused(self):
+        """To open a pipe would wait for a writer, that is, for ever."""
+        self.succeeds(*self.densify())
+        for name in ("scene.mvs", "DensifyPointCloud.cfg", "depth0001.dmap"):
+            path = self.path("work", name)
+            if os.path.exists(path):
+                os.remove(path)
+            os.mkfifo(path)
+            result = run(*self.densify("-c", "DensifyPointCloud.cfg") if name.endswith("cfg") else
+                         self.densify(), timeout=60)
+            if name.endswith("dmap"):
+                self.assertIn(result.returncode, (0, 1))  # the map may be computed again
+            else:
+                self.assertEqual(result.returncode, 1, name)
+                self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+                self.assertIn(name, result.stderr)
+            if os.path.exists(path):
+                os.remove(path)
+            write(self.scene, tiny_scene.mvs(self.images))
+
+
 class LongFields(TinyScene):
     def test_errors_are_short_lines(self):
         """Every kind of file, with fields that are long or hold control characters."""
