@@ -157,16 +157,27 @@ def delimited_entry(line, layout, known):
     return next((entry for entry in entries if known(entry[0])), entries[0] if entries else None)
 
 
-def entry_by_header(line, layout):
+def words_by_header(line, columns, known):
+    """The words of a line as its columns; the label may have blanks. Prefers a comment with which the
+    name is known, otherwise the longest comment."""
+    found, label = [], columns.index("label")
+    for end in ends_of(line):
+        fields = line[:end].split()
+        more = len(fields) - len(columns)
+        if more < 0:
+            continue
+        fields[label:label + more + 1] = [" ".join(fields[label:label + more + 1])]
+        found = fields
+        if known(found[label]):
+            break
+    return found
+
+
+def entry_by_header(line, layout, known):
     """The name and the position in the columns of the header; the position is () if its fields are
     empty. None if the line has another form."""
-    if layout.delimiter:
-        fields = split_fields(line, layout.delimiter)
-    else:
-        fields = line[:ends_of(line)[-1]].split()
-        label, more = layout.columns.index("label"), len(fields) - len(layout.columns)
-        if more > 0:
-            fields[label:label + more + 1] = [" ".join(fields[label:label + more + 1])]
+    fields = (split_fields(line, layout.delimiter) if layout.delimiter else
+              words_by_header(line, layout.columns, known))
     values = dict(zip(layout.columns, fields))
     third = "depth" if "depth" in layout.columns else "z"
     place = [values.get(axis, "") for axis in ("x", "y", third)]
@@ -182,7 +193,7 @@ def entry_in(line, known, layout=None):
     `#` at the beginning or after a space, unless the name with this `#` is `known`."""
     layout, line = layout or Layout(), line.strip()
     if layout.columns and line and line[0] != "#":
-        entry = entry_by_header(line, layout)
+        entry = entry_by_header(line, layout, known)
         if entry or layout.delimiter:
             return entry or (line, None)
     entries = [entry for entry in (entry_before_end(line[:end]) for end in ends_of(line)) if entry]

@@ -208,7 +208,7 @@ std::optional<PositionRow> read_delimited(std::string_view text, const PositionL
 
 // The words of a line whose header separates columns by blanks; blanks may be in the name.
 Fields words_by_header(std::string_view text, const std::vector<Column>& columns) {
-  Fields words = words_of(text.substr(0, possible_ends(text).back()));
+  Fields words = words_of(text);
   const auto label =
       static_cast<std::size_t>(std::ranges::find(columns, Column::label) - columns.begin());
   while (words.size() > columns.size() && label + 1 < words.size()) {
@@ -256,15 +256,31 @@ bool is_comment(std::string_view text) {
   return text.empty() || text.starts_with('#');
 }
 
+// A line whose columns are separated by blanks. Prefers a comment with which the name is an image,
+// otherwise the longest comment.
+std::optional<PositionRow> read_words_by_header(std::string_view text,
+                                                const std::vector<Column>& columns,
+                                                const IsImage& is_image, const std::string& where) {
+  Fields found;
+  std::vector<std::size_t> ends = possible_ends(text);
+  ends.erase(ends.begin(),
+             ends.end() - static_cast<std::ptrdiff_t>(std::min(ends.size(), kManyWords)));
+  for (const std::size_t end : ends) {
+    Fields words = words_by_header(text.substr(0, end), columns);
+    if (words.size() != columns.size()) continue;
+    found = std::move(words);
+    const auto label = std::ranges::find(columns, Column::label) - columns.begin();
+    if (is_image(found[static_cast<std::size_t>(label)])) break;
+  }
+  if (found.empty()) return {};
+  return row_by_header(found, columns, where);
+}
+
 // A line of a file whose header names the columns.
 std::optional<PositionRow> read_by_header(std::string_view text, const PositionLayout& layout,
-                                          const std::string& where) {
+                                          const IsImage& is_image, const std::string& where) {
   if (is_comment(text)) return {};
-  if (layout.delimiter == 0) {
-    const Fields words = words_by_header(text, layout.columns);
-    if (words.size() != layout.columns.size()) return {};
-    return row_by_header(words, layout.columns, where);
-  }
+  if (layout.delimiter == 0) return read_words_by_header(text, layout.columns, is_image, where);
   auto fields = split_fields(text, layout.delimiter);
   if (!fields) fail("{}: a quote is not closed", where);
   while (fields->size() > layout.columns.size() && fields->back().empty()) fields->pop_back();
@@ -322,7 +338,7 @@ std::optional<PositionRow> read_any(std::string_view text, const PositionLayout&
 std::optional<PositionRow> read_position_row(std::string_view text, const PositionLayout& layout,
                                              const IsImage& is_image, const std::string& where) {
   std::optional<PositionRow> row;
-  if (!layout.columns.empty()) row = read_by_header(text, layout, where);
+  if (!layout.columns.empty()) row = read_by_header(text, layout, is_image, where);
   if (!row && (layout.columns.empty() || layout.delimiter == 0))
     row = read_any(text, layout, is_image, where);
   if (row) row->known = is_image(row->name);
