@@ -55,7 +55,7 @@ Matrix3Xd without(const Matrix3Xd& points, const std::vector<std::size_t>& left_
 
 // Noise of any size makes no outlier and changes no bit.
 TEST(RobustSimilarity, IsTheBestOneWithoutOutliers) {
-  for (unsigned seed = 0; seed < 60; ++seed) {
+  for (unsigned seed = 0; seed < 24; ++seed) {
     Noise noise_of(seed);
     // More than 24 points are tried by random triples.
     const Eigen::Index count = seed < 2 ? 40 : 3 + seed % 10;
@@ -73,7 +73,7 @@ TEST(RobustSimilarity, IsTheBestOneWithoutOutliers) {
 }
 
 TEST(RobustSimilarity, LeavesOutWrongPositions) {
-  for (unsigned seed = 0; seed < 30; ++seed) {
+  for (unsigned seed = 0; seed < 12; ++seed) {
     Noise noise_of(seed);
     const Eigen::Index count = seed < 2 ? 30 : 5 + seed % 12;
     Survey survey = noise_of.survey(count, seed % 2 ? 0.3 : 0, 0.01);
@@ -116,7 +116,7 @@ TEST(RobustSimilarity, TellsThePhotographs) {
 }
 
 TEST(MirroredFit, IsBetterForALeftHandedFrame) {
-  for (unsigned seed = 0; seed < 30; ++seed) {
+  for (unsigned seed = 0; seed < 12; ++seed) {
     Survey survey = Noise(seed).survey(5 + seed % 8, 0.2, 0.001);
     survey.positions.row(seed % 3) *= -1;
     if (seed % 2) survey.positions.col(0) += Vector3d(0, 20, 0);  // and one wrong position
@@ -127,7 +127,7 @@ TEST(MirroredFit, IsBetterForALeftHandedFrame) {
 }
 
 TEST(MirroredFit, OfPlanesIsAlike) {
-  for (unsigned seed = 0; seed < 30; ++seed) {
+  for (unsigned seed = 0; seed < 12; ++seed) {
     Survey survey = Noise(seed).survey(4 + seed % 8, 0, 0.01);
     if (seed % 2) survey.positions.row(2) *= -1;
     const MirroredFit fit = mirrored_fit(survey.cameras, survey.positions);
