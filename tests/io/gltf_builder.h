@@ -73,9 +73,11 @@ class GltfBuilder {
 
   std::string glb() {
     json["buffers"] = {{{"byteLength", buffer.size()}}};
-    std::string text = json.dump();
+    return glb_of(json.dump(), buffer);
+  }
+  // A GLB with this text and buffer.
+  static std::string glb_of(std::string text, std::string bin) {
     text.resize((text.size() + 3) / 4 * 4, ' ');
-    std::string bin = buffer;
     bin.resize((bin.size() + 3) / 4 * 4);
     return "glTF" + word(2) + word(28 + text.size() + bin.size()) + word(text.size()) + "JSON" +
            text + word(bin.size()) + std::string("BIN\0", 4) + bin;

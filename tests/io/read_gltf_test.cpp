@@ -91,6 +91,9 @@ TEST_F(ReadGltfTest, DeeplyNestedExtrasAreRefused) {
   std::string text = builder.gltf("m.bin");
   const std::string deep = std::string(20000, '[') + std::string(20000, ']');
   text.replace(text.find("\"DEEP\""), 6, deep);
+  const fs::path glb = written(GltfBuilder::glb_of(text, builder.buffer), "deep.glb");
+  EXPECT_THAT(test::error_of([&] { read_textured_mesh(glb); }),
+              HasSubstr("deep.glb: malformed JSON: more than 1000"));
   const fs::path gltf = written(text, "deep.gltf");
   EXPECT_THAT(test::error_of([&] { read_shape(gltf); }),
               HasSubstr("deep.gltf: malformed JSON: more than 1000"));
