@@ -13,12 +13,14 @@
 #include "base/progress.h"
 #include "base/same_file.h"
 #include "compare/write_changes.h"
+#include "geometry/seen_part.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
 #include "io/openmvs/scene_with_cameras.h"
 #include "io/ply/ply.h"
 #include "io/textured/textured_mesh.h"
+#include "map/up_direction.h"
 #include "scene/check_mesh.h"
 #include "settings.h"
 
@@ -36,8 +38,8 @@ MemoryAllowance memory_of(const Settings& settings) {
 
 compare::ChangeFiles change_files(const Settings& settings) {
   const auto named = [&](const char* end) { return fs::path(settings.output.string() + end); };
-  return {named(".difference.tif"), named(".significant.tif"), named(".sigma.tif"), named(".json"),
-          named(".jpg")};
+  return {named(".change.difference.tif"), named(".change.significant.tif"),
+          named(".change.sigma.tif"), named(".change.json"), named(".change.jpg")};
 }
 
 Mesh read_survey(const Settings& settings, const fs::path& path, const LocalFrame& frame) {
@@ -98,12 +100,61 @@ bool has_system(const Settings& settings, const LocalFrame& frame) {
   return !frame.is_world() || settings.epsg > 0;
 }
 
-map::MapFrame place_map(const Settings& settings, const Mesh& mesh, const LocalFrame& frame) {
+// Which side of a survey's surface is the near one.
+struct NearSide {
+  fs::path mesh;
+  bool is_seen = false;    // the cameras of a scene show it; false: the faces are turned to it
+  Eigen::Vector3d facing;  // the mean normal
+};
+
+// Removes stray faces of the survey if its photographs are known.
+NearSide near_side(const Settings& settings, const fs::path& path,
+                   const std::vector<map::Photo>& photos, Mesh& mesh) {
+  return naming(path, [&]() -> NearSide {
+    const Eigen::Vector3d turned = compare::mean_normal(mesh);
+    if (photos.empty()) return {path, false, turned};
+    memory_of(settings).require(geometry::bytes_of_sights(mesh), "what the cameras see");
+    const geometry::SeenPart part = geometry::find_seen_part(mesh, geometry::posed_cameras(photos));
+    geometry::warn_if_inside_out(part, path);
+    geometry::warn_of_strays(part, path, mesh.faces.size());
+    geometry::erase_at(part.strays, mesh.faces);
+    return_freed_memory();
+    if (part.facing.isZero(0)) return {path, false, turned};
+    return {path, true, part.facing};
+  });
+}
+
+// Error if the map would show the far side of a survey: what came would count as gone.
+void check_up(const Settings& settings, const LocalFrame& frame, const Eigen::Vector3d& up,
+              const NearSide& side) {
+  if (!map::shows_far_side(up, side.facing)) return;
+  const std::string name = side.mesh.string();
+  const char* what = side.is_seen ? "the cameras of" : "the side to which the faces are turned of";
+  const char* remedy =
+      side.is_seen ? ""
+                   : "; if the faces are turned the wrong way, flip them in an editor, or give "
+                     "--scene and --other-scene, whose cameras show which side is up";
+  if (settings.up && settings.epsg == 0)
+    fail("--up {}: points away from {} {}, so that what came would count as gone; give --up {}{}",
+         map::up_text(up), what, name, map::up_text(-up), remedy);
+  if (has_system(settings, frame))
+    fail(
+        "{}: z points away from {} the mesh, so that what came would count as gone: are the "
+        "positions depths, positive downwards, or do they state northing before easting?{}",
+        name, what, remedy);
+  fail("{}: is turned to the other side than {}: one of the meshes is inside out{}", name,
+       settings.before.string(), remedy);
+}
+
+map::MapFrame place_map(const Settings& settings, const Mesh& mesh, const LocalFrame& frame,
+                        const NearSide& before, const NearSide& after) {
   const Eigen::Vector3d up =
       settings.up ? *settings.up
       : has_system(settings, frame)
           ? Eigen::Vector3d::UnitZ()
-          : naming(settings.before, [&] { return compare::upward_direction(mesh); });
+          : naming(settings.before, [&] { return compare::upward_direction(mesh, before.facing); });
+  check_up(settings, frame, up, before);
+  check_up(settings, frame, up, after);
   return map::frame_with_up(up, frame);
 }
 
@@ -176,14 +227,18 @@ int run(int argc, char** argv) {
   if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg, option_of);
   const LocalFrame frame = frame_of_survey(settings, settings.before);
   facts.mesh_frame = frame;
-  const Mesh before = read_survey(settings, settings.before, frame);
-  const Mesh after = read_survey(settings, settings.after, frame);
+  Mesh before = read_survey(settings, settings.before, frame);
+  Mesh after = read_survey(settings, settings.after, frame);
   settings.compare.photos.before = read_photos(settings, settings.scene_before, frame);
   settings.compare.photos.after = read_photos(settings, settings.scene_after, frame);
   return_freed_memory();
   facts.aligned = settings.compare.align;
   settings.compare.memory = memory_of(settings);
-  const map::MapFrame map_frame = place_map(settings, before, frame);
+  const NearSide near_before =
+      near_side(settings, settings.before, settings.compare.photos.before, before);
+  const NearSide near_after =
+      near_side(settings, settings.after, settings.compare.photos.after, after);
+  const map::MapFrame map_frame = place_map(settings, before, frame, near_before, near_after);
   facts.is_georeferenced = has_system(settings, frame) && map_frame.axes.isIdentity(0);
   keep_inputs(settings);
   settings.compare.name_before = settings.before;

@@ -29,7 +29,8 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
            "scene of the earlier survey: places that fewer than --min-views of its photographs see "
            "are not compared")
       .add("other-scene", &raw.other_scene, "the same for the later survey")
-      .add("output-file,o", &raw.output, "begin of the names of the outputs (<input>_change)")
+      .add("output-file,o", &raw.output,
+           "begin of the names of the outputs, which go on with .change (<input>)")
       .add_with_default("max-memory", &settings.max_memory,
                         "largest memory to use [MB] (0: 70 % of the free memory)");
 }
@@ -99,8 +100,8 @@ void convert(const Raw& raw, Options& options) {
   settings.scene_before = in_working_folder(common, raw.scene);
   settings.scene_after = in_working_folder(common, raw.other_scene);
   settings.working_folder = in_working_folder(common, ".");
-  settings.output = output_or(
-      common, raw.output, without_known_extension(settings.before) += "_change", "--output-file");
+  settings.output =
+      output_or(common, raw.output, without_known_extension(settings.before), "--output-file");
   settings.up = map::parse_up(raw.up, settings.epsg, option_of);
   settings.compare.align = raw.align == "icp";
   if (raw.sigma_before > 0) settings.compare.sigmas = {raw.sigma_before, raw.sigma_after};

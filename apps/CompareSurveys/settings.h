@@ -16,7 +16,7 @@ struct Settings {
   std::filesystem::path before, after;              // the meshes
   std::filesystem::path scene_before, scene_after;  // empty: not given
   std::filesystem::path working_folder;
-  std::filesystem::path output;       // the names of the files without ".difference.tif" and so on
+  std::filesystem::path output;       // the names of the files without ".change.json" and so on
   std::optional<Eigen::Vector3d> up;  // in the world; empty: see place_map() in main.cpp
   int epsg = 0;                       // 0: no coordinate reference system
   compare::CompareOptions compare;

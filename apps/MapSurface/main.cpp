@@ -14,12 +14,15 @@
 #include "base/naming.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
+#include "geometry/seen_part.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
 #include "io/textured/textured_mesh.h"
 #include "map/height_error.h"
 #include "map/pixel_width.h"
+#include "map/stated_kind.h"
+#include "map/up_direction.h"
 #include "map/write_maps.h"
 #include "scene/check_mesh.h"
 #include "settings.h"
@@ -50,13 +53,18 @@ map::MapFiles map_files(const Settings& settings) {
   return files;
 }
 
-// Removes maps of an earlier run that this run does not write: they belong to another map.
+// Removes maps of an earlier run that this run does not write: they belong to another map. A file
+// that does not state that it is such a map stays.
 void remove_stale_maps(const Settings& settings) {
-  for (const char* end : {".sigma.tif", ".hillshade.tif", ".contours.geojson"}) {
+  const std::vector<fs::path> written = map_files(settings).all();
+  for (const auto& [end, kind] : {std::pair(".sigma.tif", map::kinds::kErrors),
+                                  std::pair(".hillshade.tif", map::kinds::kShades),
+                                  std::pair(".contours.geojson", map::kinds::kContours)}) {
     const fs::path file = settings.output.string() + end;
-    const std::vector<fs::path> written = map_files(settings).all();
-    if (std::ranges::find(written, file) == written.end() && fs::remove(file))
-      log_info("removed {}, which belonged to an earlier map", file.string());
+    if (std::ranges::find(written, file) != written.end() || map::stated_kind(file) != kind)
+      continue;
+    fs::remove(file);
+    log_info("removed {}, which belonged to an earlier map", file.string());
   }
 }
 
@@ -112,6 +120,56 @@ std::vector<map::Photo> photos_of(const std::vector<texture::View>& views) {
   return photos;
 }
 
+// Prepares the mesh: removes stray faces, and turns a mesh that is inside out, because the sides
+// that the cameras see are those to map. Returns the direction from which they are seen
+// (geometry::SeenPart::facing).
+Eigen::Vector3d keep_seen_part(const Settings& settings, const std::vector<texture::View>& views,
+                               TexturedMesh& mesh) {
+  memory_of(settings).require(geometry::bytes_of_sights(mesh.mesh), "what the cameras see");
+  const geometry::SeenPart part =
+      geometry::find_seen_part(mesh.mesh, geometry::posed_cameras(views));
+  geometry::warn_if_inside_out(part, settings.mesh);
+  geometry::warn_of_strays(part, settings.mesh, mesh.mesh.faces.size());
+  geometry::erase_at(part.strays, mesh.mesh.faces);
+  geometry::erase_at(part.strays, mesh.uv);
+  geometry::erase_at(part.strays, mesh.texture_of);
+  if (part.is_inside_out()) {
+    for (auto& face : mesh.mesh.faces) std::swap(face[1], face[2]);
+    for (auto& uv : mesh.uv) std::swap(uv[1], uv[2]);
+  }
+  return_freed_memory();
+  return part.facing;
+}
+
+// Error if the direction of --up shows the far side of what the cameras see. A warning if z is up
+// for another reason: the coordinates may be right, as those of the roof of a cave.
+void check_up(const Settings& settings, const Eigen::Vector3d& up, const Eigen::Vector3d& facing) {
+  if (!map::shows_far_side(up, facing)) return;
+  if (settings.up && settings.epsg == 0)
+    fail(
+        "--up {}: points away from the cameras, so that the map would show the far side of the "
+        "surface; give --up {}",
+        map::up_text(up), map::up_text(-up));
+  log_warning(
+      "{}: the cameras are below the surface that they see, and the map shows its far side: are "
+      "the positions depths, positive downwards, or do they state northing before easting?",
+      settings.scene.scene.string());
+}
+
+// Error for a map that is far larger than the photographs can fill.
+void require_resolved(const map::MapGrid& grid, const std::vector<texture::View>& views) {
+  constexpr double kMost = 1000;  // as many pixels as all photographs have together
+  double pixels = 0;
+  for (const texture::View& view : views)
+    pixels += double{1} * view.camera.width * view.camera.height;
+  if (static_cast<double>(grid.pixels()) > kMost * pixels)
+    fail(
+        "the map would have {} x {} pixels of {:.4g} m, and all photographs together have {:.0f} "
+        "times fewer: remove parts of the mesh that lie far away, or give a larger {}",
+        grid.columns, grid.rows, grid.pixel, static_cast<double>(grid.pixels()) / pixels,
+        option_of("ground_sample_distance"));
+}
+
 double pixel_of(const Settings& settings, const Mesh& mesh,
                 const std::vector<texture::View>& views) {
   if (settings.pixel > 0) return settings.pixel;
@@ -122,16 +180,18 @@ double pixel_of(const Settings& settings, const Mesh& mesh,
 // Heights are along z if the coordinates of the scene are those of a reference system: if the scene
 // has an offset, or if the user names the system.
 PlacedMap place_map(const Settings& settings, const Mesh& mesh, const LocalFrame& frame,
-                    const std::vector<texture::View>& views) {
+                    const std::vector<texture::View>& views, const Eigen::Vector3d& facing) {
   const bool has_system = !frame.is_world() || settings.epsg > 0;
   const Eigen::Vector3d up = settings.up  ? *settings.up
                              : has_system ? Eigen::Vector3d::UnitZ()
                                           : map::fitted_up(mesh, centres_of(views));
+  check_up(settings, up, facing);
   PlacedMap map;
   map.mesh_frame = frame;
   map.frame = map::frame_with_up(up, frame);
   map.is_georeferenced = has_system && map.frame.axes.isIdentity(0);
   map.grid = map::grid_around(mesh, map.frame, pixel_of(settings, mesh, views), option_of);
+  require_resolved(map.grid, views);
   const auto& axes = map.frame.axes;
   log_info("map of {} x {} pixels of {:.4g} m", map.grid.columns, map.grid.rows, map.grid.pixel);
   log_info("map's x: {:.4f} {:.4f} {:.4f}, y: {:.4f} {:.4f} {:.4f}, up: {:.4f} {:.4f} {:.4f}",
@@ -261,7 +321,8 @@ int run(int argc, char** argv) {
   const auto& views = photographs.views();
   naming(settings.mesh, [&] {
     check_mesh(mesh.mesh);
-    const PlacedMap place = place_map(settings, mesh.mesh, frame, views);
+    const Eigen::Vector3d facing = keep_seen_part(settings, views, mesh);
+    const PlacedMap place = place_map(settings, mesh.mesh, frame, views, facing);
     keep_inputs(settings, photographs);
     std::optional<map::HeightErrors> errors;
     if (settings.image_noise > 0)

@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/same_file.h"
+#include "geometry/seen_part.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
@@ -160,6 +161,19 @@ void texture_and_write(const Settings& settings, const Paths& inputs, Mesh mesh,
   });
 }
 
+// Warns if the mesh is inside out: no photograph shows faces that are turned away from it.
+void check_sides(const Settings& settings, const texture::Photographs& photographs,
+                 const Mesh& mesh) {
+  memory_of(settings).require(geometry::bytes_of_sights(mesh), "what the cameras see");
+  naming(settings.mesh, [&] {
+    geometry::warn_if_inside_out(
+        geometry::find_seen_part(mesh, geometry::posed_cameras(photographs.views()),
+                                 {.strays = false}),
+        settings.mesh);
+  });
+  return_freed_memory();
+}
+
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
@@ -182,6 +196,7 @@ int run(int argc, char** argv) {
       scene.scene.region ? scene.scene.region->rotation : Eigen::Matrix3d::Identity();
   scene = {};
   return_freed_memory();
+  check_sides(settings, photographs, mesh);
   texture_and_write(settings, inputs, std::move(mesh), photographs, frame, axes);
   warn_of_other_tiles(settings.output, settings.texture.tiles);
   return 0;

@@ -16,6 +16,7 @@
 #include "base/version.h"
 #include "depth_maps.h"
 #include "folder.h"
+#include "geometry/seen_part.h"
 #include "io/images/bit_depth.h"
 #include "io/images/image.h"
 #include "io/openmvs/point_source.h"
@@ -83,6 +84,19 @@ void read_mesh(const Options& options, Contents& contents) {
   }
   if (faces == 0) fail("{}: the mesh has no faces", options.mesh.string());
   log_info("{}: {} faces", options.mesh.string(), faces);
+}
+
+// Warns if the mesh is inside out.
+void check_sides(const Options& options, const Contents& contents) {
+  if (!contents.mesh && !contents.textured) return;
+  std::vector<geometry::PosedCamera> cameras;
+  for (const SceneImage& image : contents.scene.scene.images)
+    if (image.calibrated) cameras.push_back({image.camera, image.pose});
+  const Mesh& mesh = contents.mesh ? *contents.mesh : contents.textured->mesh;
+  naming(options.mesh, [&] {
+    geometry::warn_if_inside_out(geometry::find_seen_part(mesh, cameras, {.strays = false}),
+                                 options.mesh);
+  });
 }
 
 // The number of the camera of each image; kNoId for an image that is not calibrated.
@@ -221,6 +235,7 @@ Contents read_contents(const Options& options) {
     fail("{}: has no calibrated image", options.scene.scene.string());
   if (!options.cloud.empty()) read_cloud(options, contents);
   read_mesh(options, contents);
+  check_sides(options, contents);
   if (!options.truth.empty())
     contents.distances = distances_to_truth(contents.scene.frame, contents.cloud, options.truth);
   return contents;

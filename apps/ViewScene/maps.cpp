@@ -13,6 +13,7 @@
 #include "folder.h"
 #include "io/images/image.h"
 #include "map/reduced_map.h"
+#include "map/stated_kind.h"
 #include "scene/resolution.h"
 #include "view/color_scale.h"
 #include "view/map_pictures.h"
@@ -23,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using map::MapKind;
+namespace kinds = map::kinds;
 using map::ReducedMap;
 
 constexpr int kMapQuality = 90;          // of JPEG files
@@ -47,11 +49,11 @@ class Layers {
   Layers(const MapOptions& options, fs::path staging)
       : options_(options), staging_(std::move(staging)) {}
 
-  // Reads the map PREFIX.`end`. Error if it does not lie on the same plane as those before, or,
-  // with the same prefix, has another grid.
-  ReducedMap read(const std::string& prefix, const char* end, MapKind kind) {
+  // Reads the map PREFIX.`end`. Error if it does not state the kind `stated`, if it does not lie on
+  // the same plane as those before, or, with the same prefix, if it has another grid.
+  ReducedMap read(const std::string& prefix, const char* end, MapKind kind, const char* stated) {
     const fs::path file = prefix + end;
-    ReducedMap map = map::read_reduced_map(file, kind, options_.longest_side);
+    ReducedMap map = map::read_reduced_map(file, kind, options_.longest_side, stated);
     if (prefix != prefix_) {
       prefix_ = prefix;
       grid_ = map.grid;
@@ -131,9 +133,9 @@ view::ColorScale from_0(std::span<const cv::Vec3b> colors, const cv::Mat1f& valu
 
 // Returns what write_heights() returns.
 Json add_maps(Layers& layers, const MapOptions& options, const fs::path& staging) {
-  const ReducedMap dem = layers.read(options.maps, ".dem.tif", MapKind::heights);
-  const ReducedMap ortho = layers.read(options.maps, ".ortho.tif", MapKind::colors);
-  const ReducedMap views = layers.read(options.maps, ".views.tif", MapKind::counts);
+  const ReducedMap dem = layers.read(options.maps, ".dem.tif", MapKind::heights, kinds::kHeights);
+  const ReducedMap ortho = layers.read(options.maps, ".ortho.tif", MapKind::colors, kinds::kColors);
+  const ReducedMap views = layers.read(options.maps, ".views.tif", MapKind::counts, kinds::kCounts);
   layers.add("ortho", "Orthomosaic", ortho, view::opaque(ortho.pixels));
   const auto [low, high] = view::quantiles(dem.pixels, kLowShare, kHighShare);
   const view::ColorScale heights = view::scale_of(view::violet_to_yellow(), low, high);
@@ -144,7 +146,8 @@ Json add_maps(Layers& layers, const MapOptions& options, const fs::path& staging
   layers.add("views", "Views", views, view::painted(views.pixels, counts),
              legend(counts, "photographs"));
   if (fs::exists(options.maps + ".sigma.tif")) {
-    const ReducedMap sigma = layers.read(options.maps, ".sigma.tif", MapKind::heights);
+    const ReducedMap sigma =
+        layers.read(options.maps, ".sigma.tif", MapKind::heights, kinds::kErrors);
     const view::ColorScale errors = from_0(view::dark_to_light(), sigma.pixels, kHighShare);
     layers.add("sigma", "Expected error", sigma, view::painted(sigma.pixels, errors),
                legend(errors, "m"));
@@ -167,10 +170,13 @@ cv::Mat3b painted_classes(const cv::Mat1f& classes) {
 }
 
 Json add_changes(Layers& layers, const MapOptions& options) {
-  const Json report = change_report(options.changes + ".json");
-  const ReducedMap difference = layers.read(options.changes, ".difference.tif", MapKind::heights);
-  const ReducedMap classes = layers.read(options.changes, ".significant.tif", MapKind::classes);
-  const ReducedMap sigma = layers.read(options.changes, ".sigma.tif", MapKind::heights);
+  const std::string prefix = options.changes + ".change";  // --map may have the same PREFIX
+  const Json report = change_report(prefix + ".json");
+  const ReducedMap difference =
+      layers.read(prefix, ".difference.tif", MapKind::heights, kinds::kDifference);
+  const ReducedMap classes =
+      layers.read(prefix, ".significant.tif", MapKind::classes, kinds::kSignificant);
+  const ReducedMap sigma = layers.read(prefix, ".sigma.tif", MapKind::heights, kinds::kSigma);
   const cv::Mat sizes = cv::abs(difference.pixels);
   const double most = view::quantiles(sizes, 0, 0.995).second;
   const view::ColorScale scale = view::scale_of(view::orange_to_blue(), -most, most);

@@ -21,8 +21,8 @@ struct MapOptions {
 //   "heights": "file", "size", "place", and "low" and "step" of view::height_data(); or null
 //   "axes", "offset": those of map::WorldAxes, or null if the files do not state them
 //   "change": with changes, the volumes of the comparison and its largest regions
-// Error that names the file if a file of `options` is missing, malformed or not of the same map as
-// the others.
+// Error that names the file if a file of `options` is missing, malformed, of another kind or
+// not of the same map as the others.
 nlohmann::ordered_json write_maps(const MapOptions& options, const std::filesystem::path& staging);
 
 }  // namespace axial::apps

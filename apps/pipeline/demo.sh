@@ -10,7 +10,7 @@
 # Needs Debian 12, and a network connection to install packages. --full: matching at full resolution;
 # without it, at half the width and height. Results:
 # build/demo/{air,refractive,selfcalibrated}.ply, {air,refractive}.glb, {air,refractive}_map.*,
-# change.*, refractive_page/index.html, table.json and report.html.
+# surveys.change.*, refractive_page/index.html, table.json and report.html.
 # Another run keeps COLMAP's models and the ground truth. axial_pipeline/demo.py runs the steps.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."

@@ -36,7 +36,6 @@ constexpr double kNoisyBend = 12;
 struct Moments {
   double area = 0;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // sum of the faces' normals times areas
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
 };
 
 Moments moments_of(const Mesh& mesh) {
@@ -47,15 +46,17 @@ Moments moments_of(const Mesh& mesh) {
     const Eigen::Vector3d normal = 0.5 * (y - x).cross(z - x);
     moments.normal += normal;
     moments.area += normal.norm();
-    moments.centre += normal.norm() * (x + y + z) / 3;
   }
   if (!(moments.area > 0)) fail("the mesh has no area");
-  moments.centre /= moments.area;
   return moments;
 }
 
-// The pixels that both grids have. Both have corners at multiples of the same pixel width.
-map::MapGrid common_grid(const map::MapGrid& a, const map::MapGrid& b) {
+// The most pixels along a side of a grid around one survey, of which the common part is a map.
+constexpr double kMostOfSurvey = 2e9;
+
+// The pixels that both grids have. Both have corners at multiples of the same pixel width. Errors
+// of map::require_possible() are passed on.
+map::MapGrid common_grid(const map::MapGrid& a, const map::MapGrid& b, SettingNames name_of) {
   const double pixel = a.pixel;
   const double left = std::max(a.left, b.left), top = std::min(a.top, b.top);
   const double right = std::min(a.left + a.columns * pixel, b.left + b.columns * pixel);
@@ -63,6 +64,7 @@ map::MapGrid common_grid(const map::MapGrid& a, const map::MapGrid& b) {
   const double columns = std::round((right - left) / pixel),
                rows = std::round((top - bottom) / pixel);
   if (!(columns >= 1 && rows >= 1)) fail("the surveys do not overlap");
+  map::require_possible(columns, rows, pixel, name_of);
   return {left, top, pixel, static_cast<int>(columns), static_cast<int>(rows)};
 }
 
@@ -234,11 +236,14 @@ Comparison placed(const Mesh& before, const Mesh& after, const map::MapFrame& fr
       least_pixels(options.changes.least_pixels, std::max(distance_before, distance_after), pixel);
   result.frame = frame;
   result.base = frame.origin.z();
-  const map::MapGrid of_before = naming(
-      options.name_before, [&] { return map::grid_around(before, frame, pixel, options.name_of); });
+  const map::MapGrid of_before = naming(options.name_before, [&] {
+    return map::grid_around(before, frame, pixel, options.name_of, kMostOfSurvey);
+  });
   const auto common = [&](const map::MapFrame& of_after) {
     return naming(options.name_after, [&] {
-      return common_grid(of_before, map::grid_around(after, of_after, pixel, options.name_of));
+      return common_grid(of_before,
+                         map::grid_around(after, of_after, pixel, options.name_of, kMostOfSurvey),
+                         options.name_of);
     });
   };
   result.grid = common(frame);
@@ -263,13 +268,15 @@ double vertex_distance(const Mesh& mesh) {
   return std::sqrt(moments_of(mesh).area / static_cast<double>(mesh.vertices.size()));
 }
 
-Eigen::Vector3d upward_direction(const Mesh& mesh) {
+Eigen::Vector3d mean_normal(const Mesh& mesh) {
   const Moments moments = moments_of(mesh);
-  const double open = moments.normal.norm() / moments.area;
-  if (!(open > 1e-6)) fail("the mesh does not show which side of it is up");
-  const Eigen::Vector3d above =
-      moments.centre + std::sqrt(moments.area) * moments.normal.normalized();
-  return map::fitted_up(mesh, {&above, 1});
+  return moments.normal / moments.area;
+}
+
+Eigen::Vector3d upward_direction(const Mesh& mesh, const Eigen::Vector3d& facing) {
+  if (!(facing.norm() > 1e-6)) fail("the mesh does not show which side of it is up");
+  const Eigen::Vector3d normal = map::fitted_plane(mesh).normal;
+  return normal.dot(facing) > 0 ? normal : Eigen::Vector3d(-normal);
 }
 
 Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,

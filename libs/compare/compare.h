@@ -68,9 +68,14 @@ struct Comparison {
 // The square root of the area of the mesh per vertex [m]. Error for a mesh without area.
 double vertex_distance(const Mesh& mesh);
 
-// The unit normal of the plane that fits the mesh best, on the side to which more of the mesh is
-// turned. Error for a mesh without area, and for a closed mesh.
-Eigen::Vector3d upward_direction(const Mesh& mesh);
+// The mean of the unit normals of the faces, weighted by area. Error for a mesh without area.
+Eigen::Vector3d mean_normal(const Mesh& mesh);
+
+// The unit normal of the plane that fits the mesh best (map::fitted_plane()), on the side of
+// `facing`: the mean normal of the side of the surface that is seen, from geometry::SeenPart or
+// from mean_normal(). Error for a mesh without area, and if `facing` is 0, as that of a closed
+// mesh.
+Eigen::Vector3d upward_direction(const Mesh& mesh, const Eigen::Vector3d& facing);
 
 // Compares two surveys. `frame`: of both meshes.
 //

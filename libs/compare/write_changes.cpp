@@ -12,6 +12,7 @@
 #include "io/bytes/json.h"
 #include "io/images/image.h"
 #include "map/geotiff.h"
+#include "map/stated_kind.h"
 
 namespace axial::compare {
 namespace {
@@ -76,9 +77,10 @@ Json json_of(const std::vector<Region>& regions) {
   return list;
 }
 
-void write_map(const fs::path& path, map::MapKind kind, const cv::Mat& pixels,
+void write_map(const fs::path& path, map::MapKind kind, const char* stated, const cv::Mat& pixels,
                const Comparison& comparison, const ChangeFacts& facts) {
   map::GeoTiff file(path, kind, comparison.grid, facts.crs);
+  file.state_kind(stated);
   file.state_axes(map::world_axes(comparison.frame, facts.mesh_frame));
   file.write(cv::Rect({}, pixels.size()), pixels);
   file.finish();
@@ -127,11 +129,12 @@ void write_changes(const ChangeFiles& files, const Comparison& comparison,
   for (const fs::path& path : files.all())  // of the blocks of maps, too
     remove_abandoned(path.parent_path(), path.stem().string());
   write_together(files.all(), [&](const std::vector<fs::path>& temporary) {
-    write_map(temporary[0], map::MapKind::heights, with_no_height(comparison.difference),
-              comparison, facts);
-    write_map(temporary[1], map::MapKind::classes, comparison.changes.classes, comparison, facts);
-    write_map(temporary[2], map::MapKind::heights, with_no_height(comparison.sigma), comparison,
-              facts);
+    write_map(temporary[0], map::MapKind::heights, map::kinds::kDifference,
+              with_no_height(comparison.difference), comparison, facts);
+    write_map(temporary[1], map::MapKind::classes, map::kinds::kSignificant,
+              comparison.changes.classes, comparison, facts);
+    write_map(temporary[2], map::MapKind::heights, map::kinds::kSigma,
+              with_no_height(comparison.sigma), comparison, facts);
     write_atomically(temporary[3], io::to_text(to_json(comparison, facts), 1) + "\n");
     io::write_jpeg(temporary[4], draw_changes(comparison, facts.is_georeferenced), kJpegQuality);
   });

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "geometry/occluders.h"
 #include "scene/any_camera.h"
 
 namespace axial::geometry {
@@ -28,14 +27,23 @@ void count(std::uint16_t& number) {
   if (number < std::numeric_limits<std::uint16_t>::max()) ++number;
 }
 
+// The faces to look at, of which there are `count`: `some`, or the first ones without `some`.
+struct Faces {
+  const Mesh& mesh;
+  std::size_t count;
+  std::span<const std::uint32_t> some = {};
+
+  std::size_t operator[](std::size_t i) const { return some.empty() ? i : some[i]; }
+};
+
 // Counts one camera at the faces that it sees.
 template <class Camera>
-void look(const Mesh& mesh, const Occluders& occluders, const Camera& camera,
+void look(const Faces& faces, const Occluders& occluders, const Camera& camera,
           const PosedCamera& posed, const SightOptions& options, FaceSights& sights) {
   parallel_for(
-      mesh.faces.size(),
-      [&](std::size_t face) {
-        const Middle middle = middle_of(mesh, face);
+      faces.count,
+      [&](std::size_t i) {
+        const Middle middle = middle_of(faces.mesh, faces[i]);
         Eigen::Vector3d origin;  // the path of light is straight from here to the point
         const auto image = camera.project(posed.pose.to_camera(middle.point), nullptr, &origin);
         if (!image.visible || image.pixel.minCoeff() < -0.5 ||
@@ -46,9 +54,23 @@ void look(const Mesh& mesh, const Occluders& occluders, const Camera& camera,
         const double cosine = (from - middle.point).normalized().dot(middle.normal);
         if (cosine == 0 || std::abs(cosine) < options.least_cosine) return;
         if (occluders.between(from, middle.point, options.tolerance)) return;
-        count(cosine > 0 ? sights.front[face] : sights.back[face]);
+        count(cosine > 0 ? sights.front[i] : sights.back[i]);
       },
       kPointGrain);
+}
+
+FaceSights sights_of(const Faces& faces, const Occluders& occluders,
+                     std::span<const PosedCamera> cameras, const SightOptions& options,
+                     const ProgressSink& progress) {
+  FaceSights sights{std::vector<std::uint16_t>(faces.count),
+                    std::vector<std::uint16_t>(faces.count)};
+  ProgressCounter counter(progress, cameras.size());
+  for (const PosedCamera& posed : cameras) {
+    std::visit([&](const auto& camera) { look(faces, occluders, camera, posed, options, sights); },
+               make_camera<double>(posed.camera));
+    counter.add();
+  }
+  return sights;
 }
 
 }  // namespace
@@ -56,15 +78,13 @@ void look(const Mesh& mesh, const Occluders& occluders, const Camera& camera,
 FaceSights count_sights(const Mesh& mesh, std::span<const PosedCamera> cameras,
                         const SightOptions& options, const ProgressSink& progress) {
   const Occluders occluders(mesh);
-  FaceSights sights{std::vector<std::uint16_t>(mesh.faces.size()),
-                    std::vector<std::uint16_t>(mesh.faces.size())};
-  ProgressCounter counter(progress, cameras.size());
-  for (const PosedCamera& posed : cameras) {
-    std::visit([&](const auto& camera) { look(mesh, occluders, camera, posed, options, sights); },
-               make_camera<double>(posed.camera));
-    counter.add();
-  }
-  return sights;
+  return sights_of({mesh, mesh.faces.size()}, occluders, cameras, options, progress);
+}
+
+FaceSights count_sights(const Mesh& mesh, const Occluders& occluders,
+                        std::span<const std::uint32_t> faces, std::span<const PosedCamera> cameras,
+                        const SightOptions& options) {
+  return sights_of({mesh, faces.size(), faces}, occluders, cameras, options, {});
 }
 
 std::uint64_t bytes_of_sights(const Mesh& mesh) {

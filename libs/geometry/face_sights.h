@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "geometry/occluders.h"
 #include "scene/camera_model.h"
 #include "scene/mesh.h"
 #include "scene/pose.h"
@@ -45,6 +46,12 @@ struct FaceSights {
 // refuses (geometry/occluders.h).
 FaceSights count_sights(const Mesh& mesh, std::span<const PosedCamera> cameras,
                         const SightOptions& options = {}, const ProgressSink& progress = {});
+
+// The same for some faces: entry i of the result belongs to the face faces[i]. `occluders`: those
+// of `mesh`.
+FaceSights count_sights(const Mesh& mesh, const Occluders& occluders,
+                        std::span<const std::uint32_t> faces, std::span<const PosedCamera> cameras,
+                        const SightOptions& options = {});
 
 // The memory [bytes] of count_sights() with its result.
 std::uint64_t bytes_of_sights(const Mesh& mesh);

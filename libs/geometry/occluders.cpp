@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "private/embree_errors.h"
 #include "scene/check_mesh.h"
 
 namespace axial::geometry {
@@ -42,8 +43,7 @@ Occluders::Occluders(const Mesh& mesh) : state_(std::make_unique<State>()) {
   s.vertices = mesh.vertices;
   s.vertices.emplace_back(Eigen::Vector3f::Zero());
   s.device.reset(rtcNewDevice(nullptr));
-  if (!s.device)
-    fail("Embree cannot be started (error {})", static_cast<int>(rtcGetDeviceError(nullptr)));
+  if (!s.device) require_no_error(nullptr, mesh.faces.size());
   s.scene.reset(rtcNewScene(s.device.get()));
   rtcSetSceneFlags(s.scene.get(),
                    static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT));
@@ -57,8 +57,7 @@ Occluders::Occluders(const Mesh& mesh) : state_(std::make_unique<State>()) {
   rtcReleaseGeometry(geometry);
   const ThreadLimit one_builder(1);  // the same tree for any number of threads
   rtcCommitScene(s.scene.get());
-  if (const RTCError error = rtcGetDeviceError(s.device.get()); error != RTC_ERROR_NONE)
-    fail("Embree cannot build the scene (error {})", static_cast<int>(error));
+  require_no_error(s.device.get(), mesh.faces.size());
 }
 
 Occluders::~Occluders() = default;

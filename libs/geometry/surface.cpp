@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "geometry/triangle_distance.h"
+#include "private/embree_errors.h"
 
 namespace axial::geometry {
 
@@ -32,13 +33,6 @@ struct Surface::Impl {
 };
 
 namespace {
-
-void check(RTCDevice device) {
-  if (const RTCError error = rtcGetDeviceError(device); error == RTC_ERROR_OUT_OF_MEMORY)
-    throw std::bad_alloc();
-  else if (error != RTC_ERROR_NONE)
-    fail("the mesh cannot be indexed: Embree error {}", static_cast<int>(error));
-}
 
 struct Search {
   const std::vector<Eigen::Vector3f>* vertices;
@@ -120,7 +114,7 @@ Surface::Surface(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
   impl_->vertices = mesh.vertices;
   impl_->faces = mesh.faces;
   impl_->device = rtcNewDevice(nullptr);
-  if (!impl_->device) fail("the ray tracer cannot be started");
+  if (!impl_->device) require_no_error(nullptr, mesh.faces.size());
   impl_->scene = rtcNewScene(impl_->device);
   rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
   RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -128,7 +122,7 @@ Surface::Surface(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
                                            sizeof(Eigen::Vector3f), impl_->vertices.size());
   void* faces = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                         sizeof impl_->faces[0], impl_->faces.size());
-  check(impl_->device);
+  require_no_error(impl_->device, mesh.faces.size());
   // NOLINTNEXTLINE(bugprone-undefined-memory-manipulation): a Vector3f is three floats.
   std::memcpy(vertices, impl_->vertices.data(), impl_->vertices.size() * sizeof(Eigen::Vector3f));
   std::memcpy(faces, impl_->faces.data(), impl_->faces.size() * sizeof impl_->faces[0]);
@@ -137,7 +131,7 @@ Surface::Surface(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
   rtcReleaseGeometry(geometry);
   const ThreadLimit one_builder(1);
   rtcCommitScene(impl_->scene);
-  check(impl_->device);
+  require_no_error(impl_->device, mesh.faces.size());
 }
 
 Surface::~Surface() = default;

@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "map/geotiff.h"
+#include "map/stated_kind.h"
 #include "private/gdal_calls.h"
 
 namespace axial::map {
@@ -35,20 +36,23 @@ void write_contours(const std::filesystem::path& heights, double interval,
                     const std::filesystem::path& path) {
   const GdalErrors errors;
   const DatasetPtr map(GDALOpen(heights.c_str(), GA_ReadOnly));
-  errors.require(map != nullptr, heights.string());
+  errors.require_read(map != nullptr, heights);
   DatasetPtr file(
       GDALCreate(GDALGetDriverByName("GeoJSON"), path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-  errors.require(file != nullptr, path.string());
-  const GdalOptions layer_options{{"COORDINATE_PRECISION", "4"}, {"WRITE_NAME", "NO"}};
+  errors.require_written(file != nullptr, path);
+  const GdalOptions layer_options{
+      {"COORDINATE_PRECISION", "4"},
+      {"WRITE_NAME", "NO"},
+      {"DESCRIPTION", fmt::format("{} {}", kKindItem, kinds::kContours)}};
   const OGRLayerH layer = GDALDatasetCreateLayer(
       file.get(), "contours", GDALGetSpatialRef(map.get()), wkbLineString, layer_options.list());
-  errors.require(layer != nullptr, path.string());
+  errors.require_written(layer != nullptr, path);
   const auto add_field = [&](const char* name, OGRFieldType type) {
     const std::unique_ptr<std::remove_pointer_t<OGRFieldDefnH>, void (*)(OGRFieldDefnH)> field(
         OGR_Fld_Create(name, type), OGR_Fld_Destroy);
     return OGR_L_CreateField(layer, field.get(), TRUE) == OGRERR_NONE;
   };
-  errors.require(add_field("ID", OFTInteger) && add_field("height", OFTReal), path.string());
+  errors.require_written(add_field("ID", OFTInteger) && add_field("height", OFTReal), path);
   const GdalOptions options{{"LEVEL_INTERVAL", fmt::format("{}", interval)},
                             {"ID_FIELD", "0"},
                             {"ELEV_FIELD", "1"},
@@ -56,7 +60,7 @@ void write_contours(const std::filesystem::path& heights, double interval,
   const CPLErr done = GDALContourGenerateEx(GDALGetRasterBand(map.get(), 1), layer, options.list(),
                                             nullptr, nullptr);
   file.reset();
-  errors.require(done == CE_None, path.string());
+  errors.require_written(done == CE_None, path);
   require_complete(path);
 }
 

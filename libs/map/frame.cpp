@@ -3,12 +3,105 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "scene/decompositions.h"
 
 namespace axial::map {
+namespace {
+
+// A sphere around the place where most of the surface is. Without a radius it is everything.
+struct Neighbourhood {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // from the first vertex
+  double radius = std::numeric_limits<double>::infinity();
+};
+
+// A face, in coordinates from the first vertex of the mesh, against cancellation.
+struct FaceOfFit {
+  Eigen::Matrix3d corners;
+  Eigen::Vector3d mean;
+  double area;
+
+  FaceOfFit(const Mesh& mesh, std::size_t face) {
+    const Eigen::Vector3d near = mesh.vertices.front().cast<double>();
+    const auto& [a, b, c] = mesh.faces[face];
+    corners << mesh.vertices[a].cast<double>() - near, mesh.vertices[b].cast<double>() - near,
+        mesh.vertices[c].cast<double>() - near;
+    mean = corners.rowwise().mean();
+    area = 0.5 * (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0)).norm();
+  }
+};
+
+struct WeightedValue {
+  double value, weight;
+};
+
+// The lowest value up to which the values have half of the weight.
+double weighted_median(std::vector<WeightedValue> values) {
+  std::ranges::sort(values, {}, &WeightedValue::value);
+  double all = 0, below = 0;
+  for (const WeightedValue& value : values) all += value.weight;
+  for (const WeightedValue& value : values)
+    if ((below += value.weight) >= 0.5 * all) return value.value;
+  return 0;
+}
+
+// Five times the median distance of the surface from its median, by area. Up to 100,000 faces at
+// equal distances in the list of faces stand for all.
+Neighbourhood neighbourhood_of(const Mesh& mesh) {
+  constexpr std::size_t kSample = 100'000;
+  constexpr double kFar = 5;
+  const std::size_t step = std::max<std::size_t>(1, mesh.faces.size() / kSample);
+  std::array<std::vector<WeightedValue>, 3> places;
+  for (std::size_t f = 0; f < mesh.faces.size(); f += step) {
+    const FaceOfFit face(mesh, f);
+    for (std::size_t k = 0; k < 3; ++k)
+      places[k].push_back({face.mean[static_cast<Eigen::Index>(k)], face.area});
+  }
+  Neighbourhood near;
+  for (std::size_t k = 0; k < 3; ++k)
+    near.centre[static_cast<Eigen::Index>(k)] = weighted_median(places[k]);
+  std::vector<WeightedValue> distances;
+  for (std::size_t i = 0; i < places[0].size(); ++i) {
+    const Eigen::Vector3d at(places[0][i].value, places[1][i].value, places[2][i].value);
+    distances.push_back({(at - near.centre).norm(), places[0][i].weight});
+  }
+  near.radius = kFar * weighted_median(std::move(distances));
+  return near;
+}
+
+struct Fit {
+  double area = 0;
+  FittedPlane plane = {Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
+};
+
+// The plane of the faces in the neighbourhood. `area` is 0 if they have no area.
+Fit fit_of(const Mesh& mesh, const Neighbourhood& near) {
+  // Moments of the surface. The second moment of a triangle of area A with the corners v_k and
+  // their mean g is A / 12 (9 g g' + sum of v_k v_k').
+  double area = 0;
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const FaceOfFit face(mesh, f);
+    if ((face.mean - near.centre).norm() > near.radius) continue;
+    area += face.area;
+    first += face.area * face.mean;
+    second += face.area / 12 *
+              (9 * face.mean * face.mean.transpose() + face.corners * face.corners.transpose());
+  }
+  if (!(area > 0)) return {};
+  const Eigen::Vector3d centroid = first / area;
+  const SymmetricEigen3 eigen(second / area - centroid * centroid.transpose());
+  return {area, {mesh.vertices.front().cast<double>() + centroid, eigen.eigenvectors().col(0)}};
+}
+
+}  // namespace
 
 MapFrame frame_with_up(const Eigen::Vector3d& up, const LocalFrame& mesh_frame) {
   const Eigen::Vector3d u = up.normalized();
@@ -22,51 +115,50 @@ MapFrame frame_with_up(const Eigen::Vector3d& up, const LocalFrame& mesh_frame) 
   return frame;
 }
 
-Eigen::Vector3d fitted_up(const Mesh& mesh, std::span<const Eigen::Vector3d> centres) {
-  // Moments of the surface. The second moment of a triangle of area A with the corners v_k and
-  // their mean g is A / 12 (9 g g' + sum of v_k v_k').
-  const Eigen::Vector3d near = mesh.vertices.front().cast<double>();  // against cancellation
-  double area = 0;
-  Eigen::Vector3d first = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
-  for (const auto& [a, b, c] : mesh.faces) {
-    Eigen::Matrix3d corners;
-    corners << mesh.vertices[a].cast<double>() - near, mesh.vertices[b].cast<double>() - near,
-        mesh.vertices[c].cast<double>() - near;
-    const Eigen::Vector3d mean = corners.rowwise().mean();
-    const double of_face =
-        0.5 * (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0)).norm();
-    area += of_face;
-    first += of_face * mean;
-    second += of_face / 12 * (9 * mean * mean.transpose() + corners * corners.transpose());
-  }
-  if (!(area > 0)) fail("the mesh has no area");
-  const Eigen::Vector3d centroid = first / area;
-  const SymmetricEigen3 eigen(second / area - centroid * centroid.transpose());
-  const Eigen::Vector3d normal = eigen.eigenvectors().col(0);
-  Eigen::Vector3d to_cameras = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& centre : centres) to_cameras += centre - near - centroid;
-  const double side = normal.dot(to_cameras);
-  if (side == 0) fail("the camera centres do not show which side of the mesh is up");
-  return side > 0 ? normal : Eigen::Vector3d(-normal);
+FittedPlane fitted_plane(const Mesh& mesh) {
+  constexpr double kMostFar = 0.02;     // share of the area
+  constexpr double kOtherPlane = 1e-3;  // sine of the angle
+  const Fit all = fit_of(mesh, {});
+  if (!(all.area > 0)) fail("the mesh has no area");
+  const Fit close = fit_of(mesh, neighbourhood_of(mesh));
+  const bool has_far = close.area > 0 && close.area < all.area;
+  if (!has_far || close.area < (1 - kMostFar) * all.area) return all.plane;
+  const bool is_other = close.plane.normal.cross(all.plane.normal).norm() > kOtherPlane;
+  return is_other ? close.plane : all.plane;
 }
 
-MapGrid grid_around(const Mesh& mesh, const MapFrame& frame, double pixel, SettingNames name_of) {
-  constexpr double kMost = 1'000'000;
+Eigen::Vector3d fitted_up(const Mesh& mesh, std::span<const Eigen::Vector3d> centres) {
+  const FittedPlane plane = fitted_plane(mesh);
+  Eigen::Vector3d to_cameras = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& centre : centres) to_cameras += centre - plane.point;
+  const double side = plane.normal.dot(to_cameras);
+  if (side == 0) fail("the camera centres do not show which side of the mesh is up");
+  return side > 0 ? plane.normal : Eigen::Vector3d(-plane.normal);
+}
+
+void require_possible(double columns, double rows, double pixel, SettingNames name_of,
+                      double most) {
+  if (!(std::max(columns, rows) <= most))
+    fail("{} {:g}: the map would have {:.0f} x {:.0f} pixels, and {:.0f} per side is the most",
+         name_of("ground_sample_distance"), pixel, columns, rows, most);
+}
+
+MapGrid grid_around(const Mesh& mesh, const MapFrame& frame, double pixel, SettingNames name_of,
+                    double most) {
   Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Array2d high = -low;
-  for (const Eigen::Vector3f& vertex : mesh.vertices) {
-    const Eigen::Array2d at = frame.to_map(vertex.cast<double>()).head<2>().array();
-    low = low.min(at), high = high.max(at);
-  }
+  for (const auto& face : mesh.faces)
+    for (const std::uint32_t corner : face) {
+      const Eigen::Array2d at =
+          frame.to_map(mesh.vertices[corner].cast<double>()).head<2>().array();
+      low = low.min(at), high = high.max(at);
+    }
   // In pixels from the origin of the map.
   constexpr double kTolerance = 1e-3;
   low = (low / pixel + kTolerance).floor();
   high = (high / pixel - kTolerance).ceil().max(low + 1);
   const Eigen::Array2d size = high - low;
-  if (!(size.maxCoeff() <= kMost))
-    fail("{} {:g}: the map would have {:.0f} x {:.0f} pixels, and {:.0f} per side is the most",
-         name_of("ground_sample_distance"), pixel, size.x(), size.y(), kMost);
+  require_possible(size.x(), size.y(), pixel, name_of, most);
   return {low.x() * pixel, high.y() * pixel, pixel, static_cast<int>(size.x()),
           static_cast<int>(size.y())};
 }

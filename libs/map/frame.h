@@ -34,10 +34,22 @@ struct MapFrame {
 // frame of the mesh.
 MapFrame frame_with_up(const Eigen::Vector3d& up, const LocalFrame& mesh_frame);
 
-// The unit normal of the plane that is fitted to the mesh by least squares of the distances of all
-// points of its surface, weighted by area. Of the two directions, the one towards the mean of the
-// camera centres `centres` [frame of the mesh] is returned. Error for a mesh whose area is 0, and
-// if the camera centres lie in the plane.
+// The plane that is fitted to a mesh.
+struct FittedPlane {
+  Eigen::Vector3d point;   // the centroid of the surface [frame of the mesh]
+  Eigen::Vector3d normal;  // unit; either of the two directions
+};
+
+// The plane that is fitted to the mesh by least squares of the distances of all points of its
+// surface, weighted by area. Faces far away are left out, because they would tilt the plane: those
+// that are more than five times farther from the median of the surface than half of its area is, if
+// they have at most 2 % of the area and if the plane without them is another one. Error for a mesh
+// whose area is 0.
+FittedPlane fitted_plane(const Mesh& mesh);
+
+// The normal of fitted_plane() in the direction towards the mean of the camera centres `centres`
+// [frame of the mesh]. Errors of fitted_plane() are passed on. Error if the camera centres lie in
+// the plane.
 Eigen::Vector3d fitted_up(const Mesh& mesh, std::span<const Eigen::Vector3d> centres);
 
 // The pixels of a map. Pixel (column, row) covers the square from (left + column * pixel, top - row
@@ -51,13 +63,19 @@ struct MapGrid {
   std::int64_t pixels() const { return std::int64_t{columns} * rows; }
 };
 
-// The smallest grid that contains all vertices of the mesh up to a thousandth of a pixel, because
+// The smallest grid that contains all faces of the mesh up to a thousandth of a pixel, because
 // vertices are rounded to float. The corners of the grid are at multiples of `pixel` in map
-// coordinates, so that the pixels of maps with the same `pixel` coincide. Error if a side has more
-// than 1,000,000 pixels; it calls `pixel` by name_of("ground_sample_distance"). Precondition: the
-// mesh has vertices, and `pixel` is above 0.
+// coordinates, so that the pixels of maps with the same `pixel` coincide. Error of
+// require_possible() for a side with more than `most` pixels. Precondition: the mesh has faces, and
+// `pixel` is above 0.
+inline constexpr double kMostPixels = 1'000'000;
 MapGrid grid_around(const Mesh& mesh, const MapFrame& frame, double pixel,
-                    SettingNames name_of = own_name);
+                    SettingNames name_of = own_name, double most = kMostPixels);
+
+// Throws an Error if a side of a map has more than `most` pixels. The message calls the width of a
+// pixel by name_of("ground_sample_distance").
+void require_possible(double columns, double rows, double pixel, SettingNames name_of,
+                      double most = kMostPixels);
 
 // The coordinate reference system of an EPSG code, as WKT. Error that calls `code` by
 // name_of("epsg") if PROJ does not know the code, and if the system is not a projected one with

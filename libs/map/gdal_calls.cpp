@@ -4,12 +4,66 @@
 #include <gdal_frmts.h>
 #include <ogrsf_frmts.h>
 
+#include <cerrno>
+#include <cstring>
+#include <exception>
 #include <mutex>
+#include <new>
+#include <system_error>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "map/geotiff.h"
 
 namespace axial::map {
+namespace {
+
+namespace fs = std::filesystem;
+
+// GDAL aborts after an error of the level CE_Fatal: a small block of memory could not be allocated.
+[[noreturn]] void end_without_memory() {
+  try {
+    throw std::bad_alloc();
+  } catch (...) {
+    std::terminate();  // writes a line and ends the program (base/out_of_memory.h)
+  }
+}
+
+// GDAL reports a failed write as such, and the system's error number tells why. Other numbers may
+// be of an earlier call that did not fail.
+bool explains_a_failed_write(int system_error) {
+  switch (system_error) {
+    case ENOSPC:
+    case EFBIG:
+    case EDQUOT:
+    case EIO:
+    case EROFS:
+    case EACCES:
+    case EPERM:
+    case ENAMETOOLONG:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::string reason_to_write(const fs::path& file, CPLErrorNum number, int system_error) {
+  std::error_code ignored;
+  if (number == CPLE_OutOfMemory || system_error == ENOMEM) return "there is not enough memory";
+  if (!file.parent_path().empty() && !fs::is_directory(file.parent_path(), ignored))
+    return "its folder does not exist";
+  return explains_a_failed_write(system_error) ? std::strerror(system_error) : "the write failed";
+}
+
+std::string reason_to_read(const fs::path& file, CPLErrorNum number) {
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return "it does not exist";
+  if (number == CPLE_OutOfMemory)
+    return "it is damaged, or there is not enough memory for its tiles";
+  return "it is no GeoTIFF, or it is damaged";
+}
+
+}  // namespace
 
 void start_gdal() {
   static std::once_flag once;
@@ -23,6 +77,7 @@ void start_gdal() {
 
 GdalErrors::GdalErrors() {
   start_gdal();
+  errno = 0;
   CPLPushErrorHandlerEx(&GdalErrors::collect, this);
 }
 
@@ -30,14 +85,26 @@ GdalErrors::~GdalErrors() {
   CPLPopErrorHandler();
 }
 
-void CPL_STDCALL GdalErrors::collect(CPLErr level, CPLErrorNum, const char* message) {
+void CPL_STDCALL GdalErrors::collect(CPLErr level, CPLErrorNum number, const char* message) {
+  if (level == CE_Fatal) end_without_memory();
+  if (level < CE_Failure) return;
   auto& self = *static_cast<GdalErrors*>(CPLGetErrorHandlerUserData());
-  if (level >= CE_Failure && self.first_.empty()) self.first_ = message;
+  if (!self.failed_) {
+    self.failed_ = true;
+    self.number_ = number;
+    self.system_error_ = errno;
+  }
+  log_details("GDAL: {}", message);
 }
 
-void GdalErrors::require(bool works, const std::string& subject) const {
-  if (works && first_.empty()) return;
-  fail("{}: {}", subject, first_.empty() ? "GDAL cannot write or read it" : first_);
+void GdalErrors::require_written(bool works, const fs::path& file) const {
+  if (works && !failed_) return;
+  fail("{}: cannot be written: {}", file.string(), reason_to_write(file, number_, system_error_));
+}
+
+void GdalErrors::require_read(bool works, const fs::path& file) const {
+  if (works && !failed_) return;
+  fail("{}: cannot be read: {}", file.string(), reason_to_read(file, number_));
 }
 
 }  // namespace axial::map

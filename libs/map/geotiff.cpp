@@ -11,6 +11,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "map/stated_kind.h"
 #include "private/gdal_calls.h"
 #include "private/map_metadata.h"
 
@@ -74,8 +75,6 @@ struct GeoTiff::State {
   MapGrid grid;
   AtomicFile blocks;
   DatasetPtr file;
-
-  std::string name() const { return path.string(); }
 };
 
 GeoTiff::GeoTiff(const fs::path& path, MapKind kind, const MapGrid& grid, const std::string& crs)
@@ -95,11 +94,11 @@ GeoTiff::GeoTiff(const fs::path& path, MapKind kind, const MapGrid& grid, const 
                             {"PHOTOMETRIC", s.facts.bands == 4 ? "RGB" : "MINISBLACK"}};
   s.file.reset(GDALCreate(GDALGetDriverByName("GTiff"), s.blocks.temporary().c_str(), grid.columns,
                           grid.rows, s.facts.bands, s.facts.type, options.list()));
-  errors.require(s.file != nullptr, s.name());
+  errors.require_written(s.file != nullptr, s.path);
   set_georeference(s.file.get(), grid, crs);
   for (int band = 1; band <= s.facts.bands && s.facts.no_value; ++band)
     GDALSetRasterNoDataValue(GDALGetRasterBand(s.file.get(), band), *s.facts.no_value);
-  errors.require(true, s.name());
+  errors.require_written(true, s.path);
 }
 
 GeoTiff::~GeoTiff() {
@@ -110,20 +109,26 @@ GeoTiff::~GeoTiff() {
 void GeoTiff::state_axes(const WorldAxes& axes) {
   const GdalErrors errors;
   map::state_axes(state_->file.get(), axes);
-  errors.require(true, state_->name());
+  errors.require_written(true, state_->path);
+}
+
+void GeoTiff::state_kind(const std::string& kind) {
+  const GdalErrors errors;
+  GDALSetMetadataItem(state_->file.get(), kKindItem, kind.c_str(), nullptr);
+  errors.require_written(true, state_->path);
 }
 
 void GeoTiff::write(const cv::Rect& at, const cv::Mat& pixels) {
   State& s = *state_;
   if (pixels.type() != s.facts.cv_type || pixels.size() != at.size())
-    fail("{}: a block has the wrong type or size", s.name());
+    fail("{}: a block has the wrong type or size", s.path.string());
   const GdalErrors errors;
   const auto bytes = static_cast<GSpacing>(pixels.elemSize1());
   const CPLErr done = GDALDatasetRasterIOEx(s.file.get(), GF_Write, at.x, at.y, at.width, at.height,
                                             pixels.data, at.width, at.height, s.facts.type,
                                             s.facts.bands, nullptr, bytes * s.facts.bands,
                                             static_cast<GSpacing>(pixels.step[0]), bytes, nullptr);
-  errors.require(done == CE_None, s.name());
+  errors.require_written(done == CE_None, s.path);
 }
 
 void GeoTiff::finish() {
@@ -135,16 +140,16 @@ void GeoTiff::finish() {
       GDALBuildOverviews(s.file.get(), s.facts.averaging, static_cast<int>(factors.size()),
                          factors.data(), 0, nullptr, nullptr, nullptr) == CE_None;
   GDALFlushCache(s.file.get());
-  errors.require(reduced, s.name());
+  errors.require_written(reduced, s.path);
   const GdalOptions options{{"COMPRESS", "DEFLATE"},      {"PREDICTOR", "YES"},
                             {"BLOCKSIZE", "512"},         {"BIGTIFF", "IF_SAFER"},
                             {"OVERVIEWS", "AUTO"},        {"OVERVIEW_COMPRESS", "DEFLATE"},
                             {"OVERVIEW_PREDICTOR", "YES"}};
   DatasetPtr map(GDALCreateCopy(GDALGetDriverByName("COG"), s.path.c_str(), s.file.get(), 1,
                                 options.list(), nullptr, nullptr));
-  errors.require(map != nullptr, s.name());
+  errors.require_written(map != nullptr, s.path);
   map.reset();
-  errors.require(true, s.name());
+  errors.require_written(true, s.path);
   s.file.reset();
 }
 
@@ -162,7 +167,7 @@ cv::Size reduced_size(const MapGrid& grid, int longest_side) {
 StoredMap read_map(const fs::path& path, int longest_side) {
   const GdalErrors errors;
   const DatasetPtr file(GDALOpen(path.c_str(), GA_ReadOnly));
-  errors.require(file != nullptr, path.string());
+  errors.require_read(file != nullptr, path);
   StoredMap map;
   std::array<double, 6> transform{};
   GDALGetGeoTransform(file.get(), transform.data());
@@ -188,7 +193,7 @@ StoredMap read_map(const fs::path& path, int longest_side) {
       : depth == CV_16U ? GDT_UInt16
                         : GDT_Byte,
       bands, nullptr, bytes * bands, static_cast<GSpacing>(map.pixels.step[0]), bytes, &how);
-  errors.require(done == CE_None, path.string());
+  errors.require_read(done == CE_None, path);
   return map;
 }
 

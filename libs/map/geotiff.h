@@ -53,6 +53,10 @@ class GeoTiff {
   // (docs/maps.md). Without this call the file does not state them.
   void state_axes(const WorldAxes& axes);
 
+  // States what the map shows: the metadata item AXIALMVS_KIND, with a value of map/stated_kind.h.
+  // Without this call the file does not state it.
+  void state_kind(const std::string& kind);
+
   // Writes the pixels `at` of the map. The type of `pixels` is that of the kind: CV_32FC1, CV_8UC4
   // (R G B alpha), CV_16UC1 or CV_8UC1. Pixels that are never written have no surface.
   void write(const cv::Rect& at, const cv::Mat& pixels);

@@ -10,6 +10,8 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/out_of_memory.h"
+#include "map/stated_kind.h"
 #include "private/gdal_calls.h"
 #include "private/map_metadata.h"
 
@@ -54,6 +56,31 @@ void check_bands(GDALDatasetH file, MapKind kind, const fs::path& path) {
          words_of(wanted.count, wanted.type));
 }
 
+// A file that states no kind is refused, too: another program or an earlier version wrote it, and
+// its name alone does not show what its values are.
+void check_kind(GDALDatasetH file, const std::string& wanted, const fs::path& path) {
+  const char* item = GDALGetMetadataItem(file, kKindItem, nullptr);
+  const std::string found = item == nullptr ? "" : item;
+  if (wanted.empty() || found == wanted) return;
+  const char* program = wanted.starts_with("map.") ? "MapSurface" : "CompareSurveys";
+  if (found.empty())
+    fail("{}: AXIALMVS_KIND is missing: must be {}, as {} writes it", path.string(), wanted,
+         program);
+  fail("{}: AXIALMVS_KIND {}: must be {}, as {} writes it", path.string(), found, wanted, program);
+}
+
+// GDAL reads whole blocks. Damaged numbers can make them as large as all memory.
+void check_blocks(GDALDatasetH file, const fs::path& path) {
+  constexpr double kMost = 1e9;  // of one block [bytes]
+  int columns = 0, rows = 0;
+  const GDALRasterBandH band = GDALGetRasterBand(file, 1);
+  GDALGetBlockSize(band, &columns, &rows);
+  const int bytes = GDALGetDataTypeSizeBytes(GDALGetRasterDataType(band));
+  if (double{1} * columns * rows * bytes * GDALGetRasterCount(file) > kMost)
+    fail("{}: has blocks of {} x {} pixels: it is damaged, or must be stored in smaller tiles",
+         path.string(), columns, rows);
+}
+
 MapGrid grid_of(GDALDatasetH file, const fs::path& path) {
   std::array<double, 6> t{};
   const bool is_stated = GDALGetGeoTransform(file, t.data()) == CE_None;
@@ -64,6 +91,19 @@ MapGrid grid_of(GDALDatasetH file, const fs::path& path) {
     fail("{}: has no geotransform of a map with square pixels whose y axis points upwards",
          path.string());
   return {t[0], t[3], t[1], GDALGetRasterXSize(file), GDALGetRasterYSize(file)};
+}
+
+// Calls `read`. If memory runs out, the Error names the file: damaged sizes are the likely cause.
+template <class Read>
+cv::Mat with_memory(const fs::path& path, const Read& read) {
+  try {
+    return read();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    if (!is_out_of_memory(error)) throw;
+    fail("{}: cannot be read: it is damaged, or there is not enough memory for it", path.string());
+  }
 }
 
 // The pixels of the file with `size` pixels, in their own type for colours and otherwise as float.
@@ -80,7 +120,7 @@ cv::Mat read_pixels(GDALDatasetH file, MapKind kind, const MapGrid& grid, cv::Si
       GDALDatasetRasterIOEx(file, GF_Read, 0, 0, grid.columns, grid.rows, pixels.data, size.width,
                             size.height, colors ? GDT_Byte : GDT_Float32, bands, nullptr,
                             bytes * bands, static_cast<GSpacing>(pixels.step[0]), bytes, &how);
-  errors.require(done == CE_None, path.string());
+  errors.require_read(done == CE_None, path);
   return pixels;
 }
 
@@ -94,19 +134,24 @@ void mark_missing(GDALDatasetH file, cv::Mat1f values) {
 
 }  // namespace
 
-ReducedMap read_reduced_map(const fs::path& path, MapKind kind, int longest_side) {
+ReducedMap read_reduced_map(const fs::path& path, MapKind kind, int longest_side,
+                            const std::string& stated) {
   const GdalErrors errors;
   const DatasetPtr file(GDALOpen(path.c_str(), GA_ReadOnly));
-  errors.require(file != nullptr, path.string());
+  errors.require_read(file != nullptr, path);
   check_bands(file.get(), kind, path);
+  check_kind(file.get(), stated, path);
+  check_blocks(file.get(), path);
   ReducedMap map;
   map.grid = grid_of(file.get(), path);
   map.axes = axes_in(file.get(), path);
   const int longest = std::max(map.grid.columns, map.grid.rows);
   const double scale = std::min(1.0, static_cast<double>(longest_side) / longest);
   const auto reduced = [&](int side) { return std::max(1, static_cast<int>(side * scale + 0.5)); };
-  map.pixels = read_pixels(file.get(), kind, map.grid,
-                           {reduced(map.grid.columns), reduced(map.grid.rows)}, errors, path);
+  map.pixels = with_memory(path, [&] {
+    return read_pixels(file.get(), kind, map.grid,
+                       {reduced(map.grid.columns), reduced(map.grid.rows)}, errors, path);
+  });
   if (kind != MapKind::colors) mark_missing(file.get(), map.pixels);
   return map;
 }

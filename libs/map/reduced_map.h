@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <string>
 
 #include "map/geotiff.h"
 #include "map/world_axes.h"
@@ -30,9 +31,11 @@ struct ReducedMap {
 // its area that have a value, or that are not transparent. If the file has reduced copies, the mean
 // is that of the pixels of the next larger copy. Classes are those of single pixels.
 //
-// Error that names the file if it cannot be read, if its bands are not those of `kind`, and if its
+// Error that names the file if it cannot be read, if it does not state the kind `stated`
+// (map/stated_kind.h; empty: any or none), if its bands are not those of `kind`, and if its
 // geotransform is not that of a map with square pixels whose y axis points upwards, as those of
 // GeoTiff.
-ReducedMap read_reduced_map(const std::filesystem::path& path, MapKind kind, int longest_side);
+ReducedMap read_reduced_map(const std::filesystem::path& path, MapKind kind, int longest_side,
+                            const std::string& stated = {});
 
 }  // namespace axial::map

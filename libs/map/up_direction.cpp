@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "map/up_direction.h"
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "base/parse_number.h"
 #include "base/split.h"
@@ -23,6 +25,16 @@ std::optional<Eigen::Vector3d> parse_up(const std::string& text, int epsg, Setti
     fail("{} {}: must be 0,0,1 with {}, whose heights are along z", name_of("up"), text,
          name_of("epsg"));
   return up;
+}
+
+std::string up_text(const Eigen::Vector3d& up) {
+  const Eigen::Vector3d plain = up + Eigen::Vector3d::Zero();  // -0 becomes 0
+  return fmt::format("{:g},{:g},{:g}", plain.x(), plain.y(), plain.z());
+}
+
+bool shows_far_side(const Eigen::Vector3d& up, const Eigen::Vector3d& facing) {
+  constexpr double kLeast = 0.2;
+  return up.normalized().dot(facing) < -kLeast;
 }
 
 }  // namespace axial::map

@@ -17,4 +17,13 @@ namespace axial::map {
 std::optional<Eigen::Vector3d> parse_up(const std::string& text, int epsg,
                                         SettingNames name_of = own_name);
 
+// The text "X,Y,Z" of a direction, as parse_up() reads it.
+std::string up_text(const Eigen::Vector3d& up);
+
+// True if a map with the upward direction `up` shows the far side of a surface. `facing`: the mean,
+// weighted by area, of the unit normals of the surface on its near side; zero: not known. The far
+// side is certain if the mean points downwards by more than 0.2: walls and closed surfaces have a
+// mean about 0.
+bool shows_far_side(const Eigen::Vector3d& up, const Eigen::Vector3d& facing);
+
 }  // namespace axial::map

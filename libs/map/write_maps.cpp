@@ -13,6 +13,7 @@
 #include "map/contours.h"
 #include "map/geotiff.h"
 #include "map/overview.h"
+#include "map/stated_kind.h"
 
 namespace axial::map {
 namespace {
@@ -31,17 +32,18 @@ class OpenMaps {
  public:
   OpenMaps(const MapFiles& files, const MapContent& content, const WriteOptions& options) {
     const WorldAxes axes = world_axes(content.frame, options.mesh_frame);
-    const auto open = [&](const fs::path& path, MapKind kind) {
+    const auto open = [&](const fs::path& path, MapKind kind, const char* stated) {
       if (path.empty()) return std::unique_ptr<GeoTiff>();
       auto map = std::make_unique<GeoTiff>(path, kind, content.grid, options.crs);
       map->state_axes(axes);
+      map->state_kind(stated);
       return map;
     };
-    heights_ = open(files.heights, MapKind::heights);
-    colors_ = open(files.colors, MapKind::colors);
-    counts_ = open(files.counts, MapKind::counts);
-    errors_ = open(files.errors, MapKind::heights);
-    shades_ = open(files.shades, MapKind::shades);
+    heights_ = open(files.heights, MapKind::heights, kinds::kHeights);
+    colors_ = open(files.colors, MapKind::colors, kinds::kColors);
+    counts_ = open(files.counts, MapKind::counts, kinds::kCounts);
+    errors_ = open(files.errors, MapKind::heights, kinds::kErrors);
+    shades_ = open(files.shades, MapKind::shades, kinds::kShades);
   }
 
   void write(const MapBlock& block) {
@@ -129,11 +131,13 @@ MapReport make_maps(const MapFiles& files, const MapContent& content, const Writ
 void check_contours(const MapContent& content, const WriteOptions& options) {
   constexpr double kMost = 10000;
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Eigen::Vector3f& vertex : content.mesh.mesh.vertices) {
-    const double height = content.frame.axes.row(2).dot(vertex.cast<double>());
-    low = std::min(low, height);
-    high = std::max(high, height);
-  }
+  const Mesh& mesh = content.mesh.mesh;
+  for (const auto& face : mesh.faces)
+    for (const std::uint32_t corner : face) {
+      const double height = content.frame.axes.row(2).dot(mesh.vertices[corner].cast<double>());
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
   if ((high - low) / options.contour_interval > kMost)
     fail("{} {}: makes more than {} contour lines on a relief of {:.4g} m",
          options.name_of("contour_interval"), options.contour_interval, kMost, high - low);

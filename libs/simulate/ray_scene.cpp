@@ -55,7 +55,8 @@ RayScene::RayScene(const TriangleMesh& mesh) : state_(std::make_unique<State>())
 
   s.device.reset(rtcNewDevice(nullptr));
   if (!s.device)
-    fail("Embree cannot be started (error {})", static_cast<int>(rtcGetDeviceError(nullptr)));
+    fail("the ray tracer cannot be started: is there enough memory? (error {})",
+         static_cast<int>(rtcGetDeviceError(nullptr)));
   s.scene.reset(rtcNewScene(s.device.get()));
   rtcSetSceneFlags(s.scene.get(), RTC_SCENE_FLAG_ROBUST);
   RTCGeometry geometry = rtcNewGeometry(s.device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -69,7 +70,8 @@ RayScene::RayScene(const TriangleMesh& mesh) : state_(std::make_unique<State>())
   const ThreadLimit one_builder(1);
   rtcCommitScene(s.scene.get());
   if (const RTCError error = rtcGetDeviceError(s.device.get()); error != RTC_ERROR_NONE)
-    fail("Embree cannot build the scene (error {})", static_cast<int>(error));
+    fail("the ray tracer cannot hold the mesh: is there enough memory? (error {})",
+         static_cast<int>(error));
 }
 
 RayScene::~RayScene() = default;

@@ -142,8 +142,8 @@ void write_picture(const std::string& file, const cv::Mat1f& difference, const c
 
 int run(int argc, char** argv) {
   const std::string change = argv[2];
-  const map::StoredMap difference = map::read_map(change + ".difference.tif");
-  const cv::Mat1b classes = map::read_map(change + ".significant.tif").pixels;
+  const map::StoredMap difference = map::read_map(change + ".change.difference.tif");
+  const cv::Mat1b classes = map::read_map(change + ".change.significant.tif").pixels;
   const map::MapGrid& grid = difference.grid;
   const Truth truth = true_change(argv[1], grid);
   print_volumes(classes, truth);

@@ -39,7 +39,7 @@ def compared(before, after, seed, align):
     said = checked.read_text()
     volumes = re.search(r"volumes: came (\S+) gone (\S+) others: came (\S+) gone (\S+)", said)
     areas = re.search(r"compared (\S+) changed (\S+) missed \S+ false (\S+)", said)
-    return (json.loads(change.with_suffix(".json").read_text()),
+    return (json.loads(change.with_suffix(".change.json").read_text()),
             [float(v) for v in volumes.groups()], [float(v) for v in areas.groups()])
 
 

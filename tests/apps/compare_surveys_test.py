@@ -9,10 +9,10 @@ import random
 
 from geotiff import read_geotiff
 from programs import ProgramTest, contents, files_below, grey_png, main, read, run, write
-from texture_mesh_test import mesh_ply
-from tiny_scene import mvs
+from texture_mesh_test import mesh_ply, wall
+from tiny_scene import TinyScene, mvs
 
-OUTPUTS = {f"work/change.{end}" for end in ("difference.tif", "significant.tif", "sigma.tif", "json", "jpg")}
+OUTPUTS = {f"work/reef.change.{end}" for end in ("difference.tif", "significant.tif", "sigma.tif", "json", "jpg")}
 CELLS, SPACING = (80, 60), 0.02
 
 
@@ -74,18 +74,19 @@ class CompareTest(ProgramTest):
 
     def compare(self, *arguments):
         return ("CompareSurveys", "-w", self.path("work"), "-i", self.before, "--other", self.after,
-                *(() if "-o" in arguments else ("-o", "change")), *arguments)
+                *(() if "-o" in arguments else ("-o", "reef")), *arguments)
 
     def report(self):
-        return json.loads(read(self.path("work", "change.json")))
+        return json.loads(read(self.path("work", "reef.change.json")))
 
     def map(self, name):
-        return read_geotiff(read(self.path("work", f"change.{name}.tif")))
+        return read_geotiff(read(self.path("work", f"reef.change.{name}.tif")))
 
     def refuses_and_keeps(self, expected, *command, **options):
         kept = contents(self.folder)
-        self.refuses(expected, *command, **options)
+        result = self.refuses(expected, *command, **options)
         self.assertEqual(contents(self.folder), kept, command)
+        return result
 
 
 class Outputs(CompareTest):
@@ -94,7 +95,7 @@ class Outputs(CompareTest):
         self.succeeds(*self.compare())
         self.assertEqual(files_below(self.folder) - old, OUTPUTS)
         self.succeeds("CompareSurveys", self.before, "--other", self.after)
-        self.assertIn("work/a_change.json", files_below(self.folder))
+        self.assertIn("work/a.change.json", files_below(self.folder))
 
     def test_a_moved_block(self):
         self.succeeds(*self.compare("--align", "icp", "--up", "0,0,1"))
@@ -206,6 +207,125 @@ class Outputs(CompareTest):
             self.assertAlmostEqual(self.report()[kind]["volume"], expected[kind]["volume"], delta=1e-5)
 
 
+def turned(mesh):
+    """The same mesh inside out."""
+    vertices, faces = mesh
+    return vertices, [face[::-1] for face in faces]
+
+
+class UpAndDown(CompareTest):
+    """What came and what went is never exchanged: the result is right, or it is refused."""
+
+    def setUp(self):
+        super().setUp()
+        self.scene = self.path("work", "scene.mvs")  # of three cameras above the plot
+        write(self.scene, mvs(["a.png", "b.png", "c.png"], rotation=(1, 0, 0, 0, -1, 0, 0, 0, -1),
+                              centres=[(x, 0.6, 2) for x in (0.7, 0.8, 0.9)], points=[]))
+        self.scenes = ("--scene", self.scene, "--other-scene", self.scene)
+        self.meshes = {self.before: survey(before, 1), self.after: survey(after, 2)}
+        for path, mesh in self.meshes.items():
+            write(path, mesh_ply(*mesh))
+
+    def turn(self, *paths):
+        for path in paths:
+            write(path, mesh_ply(*turned(self.meshes[path])))
+
+    def check_right(self, *arguments):
+        said = self.succeeds(*self.compare(*arguments)).stdout
+        report = self.report()
+        self.assertGreater(report["map"]["up"][2], 0.9)
+        for change, volume in (("came", volume_of_block(1.1, 0.7)), ("gone", volume_of_block(0.3, 0.3))):
+            self.assertAlmostEqual(report[change]["volume"], volume, delta=0.05 * volume)
+        return said
+
+    def test_cameras_show_what_is_up(self):
+        for arguments in ((), ("--align", "icp"), ("--up", "0,0,1")):
+            self.assertNotIn("warning", self.check_right(*self.scenes, *arguments))
+        self.turn(self.before, self.after)
+        for arguments in ((), ("--align", "icp"), ("--up", "0,0,1")):
+            said = self.check_right(*self.scenes, *arguments)
+            for mesh in (self.before, self.after):
+                self.assertIn(f"warning: {mesh}: the mesh is inside out", said)
+
+    def test_up_away_from_the_cameras_is_refused(self):
+        self.refuses_and_keeps(f"--up 0,0,-1: points away from the cameras of {self.before}, so that what came would "
+                               "count as gone; give --up 0,0,1\n", *self.compare(*self.scenes, "--up", "0,0,-1"))
+
+    def test_without_cameras_faces_must_be_turned_up(self):
+        self.refuses_and_keeps(f"--up 0,0,-1: points away from the side to which the faces are turned of {self.before}",
+                               *self.compare("--up", "0,0,-1"))
+        self.turn(self.after)
+        wrong = "is turned to the other side than " + self.before + ": one of the meshes is inside out; if"
+        self.refuses_and_keeps(f"{self.after}: {wrong}", *self.compare())
+        self.refuses_and_keeps(f"{self.after}: {wrong}", *self.compare("--scene", self.scene))
+        self.turn(self.before, self.after)
+        self.refuses_and_keeps("--up 0,0,1: points away from the side", *self.compare("--up", "0,0,1"))
+        write(self.after, mesh_ply(*self.meshes[self.after]))
+        self.refuses_and_keeps(f"{self.after}: {wrong}", *self.compare())
+
+    def test_depths_in_place_of_heights_are_refused(self):
+        """Positions of surveys in a frame whose axes are north, east and down."""
+        for path, (vertices, faces) in self.meshes.items():
+            text = mesh_ply([(y, x, -z) for x, y, z in vertices], faces)
+            write(path, text.replace("format ascii 1.0", "format ascii 1.0\ncomment geo_offset 500000 4500000 30"))
+        causes = "are the positions depths, positive downwards, or do they state northing before easting?"
+        for arguments in ((), ("--epsg", "32631"), ("--align", "icp")):
+            said = self.refuses_and_keeps(f"{self.before}: z points away from the side", *self.compare(*arguments))
+            self.assertIn(causes, said.stderr)
+
+
+class FarFaces(CompareTest):
+    def far(self, mesh, place, is_used=True):
+        vertices, faces = mesh
+        corners = [place, (place[0] + 0.2, place[1], place[2]), (place[0], place[1] + 0.2, place[2])]
+        n = len(vertices)
+        return vertices + corners, faces + ([(n, n + 1, n + 2)] if is_used else [])
+
+    def test_they_do_not_tilt_or_widen_the_map(self):
+        self.succeeds(*self.compare())
+        plain = self.report()
+        for place, is_used in (((120, 120, 100), True), ((1000, 1000, 0), False), ((0, 0, 200), True)):
+            write(self.before, mesh_ply(*self.far(survey(before, 1), place, is_used)))
+            self.succeeds(*self.compare("--gsd", plain["map"]["pixel"]))
+            found = self.report()
+            self.assertEqual(found["map"], plain["map"])
+
+    def test_they_do_not_count_on_the_way_to_a_small_map(self):
+        write(self.before, mesh_ply(*self.far(survey(before, 1), (50_000, 0, 0))))
+        self.succeeds(*self.compare("--up", "0,0,1", "--gsd", "0.02"))
+        self.assertLess(self.report()["map"]["columns"], 100)
+
+
+class MapsOfTheSamePrefix(TinyScene):
+    """MapSurface and CompareSurveys with the same -o leave each other's files alone."""
+
+    def test_neither_program_touches_the_files_of_the_other(self):
+        mesh = self.path("work", "scene.ply")
+        write(mesh, mesh_ply(*wall()))
+        map_it = ("MapSurface", "-i", self.scene, "-w", self.work, "-o", "reef")
+        compare = ("CompareSurveys", "-i", mesh, "-w", self.work, "--other", mesh, "-o", "reef")
+        self.succeeds(*map_it, "--hillshade", "--contours", "0.1")
+        maps = contents(self.work)
+        self.assertLess({"reef.sigma.tif", "reef.jpg"}, set(maps))
+        self.succeeds(*compare)
+        both = contents(self.work)
+        self.assertEqual({name: both[name] for name in maps}, maps)
+        changes = {name: data for name, data in both.items() if name not in maps}
+        self.assertEqual({f"work/{name}" for name in changes}, OUTPUTS)
+        # Maps of an earlier run go, and nothing else.
+        other = {name: changes["reef.change.sigma.tif"] for name in ("reef.sigma.tif", "reef.hillshade.tif")}
+        self.succeeds(*map_it, "--image-noise", "0")
+        self.assertEqual(set(contents(self.work)) & set(maps), set(maps) - {
+            "reef.sigma.tif", "reef.hillshade.tif", "reef.contours.geojson"})
+        notes = {**other, "reef.contours.geojson": b'{"type": "FeatureCollection", "features": []}'}
+        for name, data in notes.items():
+            write(self.path("work", name), data)
+        self.succeeds(*map_it, "--image-noise", "0")
+        kept = contents(self.work)
+        for name, data in {**changes, **notes}.items():
+            self.assertEqual(kept[name], data, name)
+
+
 class WrongInput(CompareTest):
     def test_one_line_that_names_the_fault(self):
         for expected, *arguments in (
@@ -240,32 +360,30 @@ class WrongInput(CompareTest):
         for expected, mesh in (
                 ("b.ply: the mesh has no faces", (vertices, [])),
                 ("b.ply: the surveys do not overlap", (far, faces)),
-                ("b.ply: the surveys have only", (vertices, faces[:60]))):
+                ("b.ply: the later survey has only 62 vertices", (vertices, faces[:60])),
+                ("b.ply: the surveys have only", (vertices, faces[:160]))):
             write(self.after, mesh_ply(*mesh))
             self.refuses_and_keeps(expected, *self.compare("--align", "icp"))
         write(self.before, mesh_ply([(0, 0, 1)] * 3, [(0, 1, 2)]))
         self.refuses_and_keeps("a.ply: the mesh has no area", *self.compare())
 
     def test_an_input_is_not_overwritten(self):
-        write(self.path("work", "change.difference.tif"), read(self.after))
+        write(self.path("work", "reef.change.difference.tif"), read(self.after))
         self.refuses_and_keeps("--output-file", "CompareSurveys", "-w", self.path("work"), "-i", "a.ply",
-                               "--other", "change.difference.tif", "-o", "change")
+                               "--other", "reef.change.difference.tif", "-o", "reef")
 
-    def test_the_files_beside_a_scene_are_not_overwritten(self):
-        scene = self.path("work", "scene.mvs")
+    def test_a_scene_is_not_overwritten(self):
+        scene = self.path("work", "reef.change.json")
         write(scene, mvs(["a.png", "b.png", "c.png"], rotation=(1, 0, 0, 0, -1, 0, 0, 0, -1),
                          centres=[(x, 0.6, 2) for x in (0.7, 0.8, 0.9)], points=[]))
-        write(self.path("work", "scene.housing.json"),
-              '{"version": 1, "ports": {"main": {"type": "flat", "distance_m": 0.001, '
-              '"thickness_m": 0.001, "normal": [0, 0, 1], "n_air": 1, "n_glass": 1.5, '
-              '"n_water": 1.33}}, "default": "main"}')
         for option in ("--scene", "--other-scene"):
             self.refuses_and_keeps("--output-file", *self.compare(
-                "--up", "0,0,1", option, scene, "-o", "scene.housing"))
+                "--up", "0,0,1", option, scene))
 
     def test_a_full_disk_leaves_the_old_files(self):
         self.succeeds(*self.compare())
-        self.refuses_and_keeps("change.", *self.compare("--gsd", "0.001"), file_size_limit=100_000)
+        said = self.refuses_and_keeps("reef.change.", *self.compare("--gsd", "0.001"), file_size_limit=100_000)
+        self.assertRegex(said.stderr, r"reef\.change\.\w+\.tif: cannot be written: File too large\n$")
 
     def test_help(self):
         self.assertEqual(run("CompareSurveys").returncode, 1)

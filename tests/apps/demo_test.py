@@ -62,7 +62,7 @@ class Demo(InFolder):
         lines = [*rows, demo_table.load_best_fit(self.folder)]
         meshes = demo_mesh.load(rows, demo.MESHES)
         self.write("refractive_page/index.html", "")
-        self.write("change.json", json.dumps({"area_changed": 0.0123, "area_compared": 1}))
+        self.write("surveys.change.json", json.dumps({"area_changed": 0.0123, "area_compared": 1}))
         page = demo_page.page(rows, lines, meshes, photograph,
                               demo_survey.section("refractive", self.folder), scene="closeup",
                               description="A scene.", size="half")

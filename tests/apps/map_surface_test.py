@@ -145,6 +145,103 @@ class Pixels(MapTest):
         self.assertEqual(holes, 40 * 16 // 2)
 
 
+def turned(faces):
+    """The same faces with their outside on the other side."""
+    return [face[::-1] for face in faces]
+
+
+def face_at(x, y, z, first, side=0.2):
+    """The vertices of a face, and the face as the vertices from number `first` on."""
+    return ([(x, y, z), (x, y + side, z), (x + side, y, z)], (first, first + 1, first + 2))
+
+
+class UpAndDown(MapTest):
+    """The side that the cameras see is the upper one."""
+
+    def test_a_mesh_that_is_inside_out_gives_the_same_map(self):
+        said = self.succeeds(*self.map()).stdout
+        self.assertNotIn("warning", said)
+        plain = {name: self.read_map(f"scene_map.{name}.tif") for name in ("dem", "views", "sigma", "ortho")}
+        vertices, faces = wall()
+        write(self.mesh, mesh_ply(vertices, turned(faces)))
+        said = self.succeeds(*self.map()).stdout
+        self.assertIn("warning: " + self.mesh + ": the mesh is inside out: the cameras see 100 % of its faces from "
+                      "behind; flip the faces in an editor", said)
+        for name, expected in plain.items():
+            found = self.read_map(f"scene_map.{name}.tif")
+            if name != "ortho":
+                self.assertEqual(found.rows, expected.rows, name)
+            else:  # textures are cut out of the photographs at other places
+                self.assertLessEqual(max(abs(a - b) for r, s in zip(found.rows, expected.rows)
+                                         for p, q in zip(r, s) for a, b in zip(p, q)), 1)
+
+    def test_a_textured_mesh_that_is_inside_out(self):
+        self.succeeds("TextureMesh", "-i", self.scene, "-w", self.work, "-o", "textured")
+        self.succeeds(*self.map("-m", "textured.ply"))
+        plain = {name: read(self.path("work", name)) for name in MAPS}
+        head, body = read(self.path("work", "textured.ply")).split(b"end_header\n")
+        vertices = int(re.search(rb"element vertex (\d+)", head)[1])
+        size = (len(body) - 12 * vertices) // int(re.search(rb"element face (\d+)", head)[1])
+        flipped = body[:12 * vertices]
+        for at in range(12 * vertices, len(body), size):  # count, 3 corners, count, 3 places in the texture
+            face = body[at:at + size]
+            flipped += (face[:1] + face[1:5] + face[9:13] + face[5:9] + face[13:14] + face[14:22] +
+                        face[30:38] + face[22:30] + face[38:])
+        write(self.path("work", "textured.ply"), head + b"end_header\n" + flipped)
+        self.assertIn("the mesh is inside out", self.succeeds(*self.map("-m", "textured.ply")).stdout)
+        self.assertEqual({name: read(self.path("work", name)) for name in MAPS}, plain)
+
+    def test_up_that_points_away_from_the_cameras_is_refused(self):
+        for arguments in ((), ("--gsd", "0.0125")):
+            self.refuses_and_keeps("--up 0,0,1: points away from the cameras, so that the map would show the far "
+                                   "side of the surface; give --up 0,0,-1", *self.map("--up", "0,0,1", *arguments))
+        self.refuses_and_keeps("give --up -0.1,0,-1", *self.map("--up", "0.2,0,2"))
+        # Along the wall, both sides are as good as each other.
+        self.succeeds(*self.map("--up", "0,-1,0.1"))
+
+    def test_cameras_below_the_surface_are_told(self):
+        """As with depths in place of heights."""
+        told = "warning: " + self.scene + ": the cameras are below the surface that they see"
+        said = self.succeeds(*self.map("--epsg", "32631")).stdout
+        self.assertIn(told, said)
+        self.assertIn("depths, positive downwards, or do they state northing before easting?", said)
+        self.assertNotIn(told, self.succeeds(*self.map()).stdout)
+
+
+class FarFaces(MapTest):
+    """Parts of the mesh far away, which an editor or another program has left."""
+
+    def setUp(self):
+        super().setUp()
+        self.succeeds(*self.map())
+        self.plain = {name: read(self.path("work", name)) for name in MAPS}
+
+    def check_same_maps(self, vertices, faces):
+        write(self.mesh, mesh_ply(vertices, faces))
+        said = self.succeeds(*self.map()).stdout
+        self.assertEqual({name: read(self.path("work", name)) for name in MAPS}, self.plain)
+        return said
+
+    def test_a_vertex_that_no_face_uses(self):
+        vertices, faces = wall()
+        self.assertNotIn("warning", self.check_same_maps(vertices + [(1000, 1000, 1000)], faces))
+
+    def test_a_face_that_no_camera_sees(self):
+        vertices, faces = wall()
+        corners, face = face_at(1000, 0, 1, len(vertices))
+        said = self.check_same_maps(vertices + corners, faces + [face])
+        self.assertIn("warning: " + self.mesh + ": 1 of 289 faces are left out: no camera sees them", said)
+
+    def test_a_face_far_away_that_cameras_see(self):
+        """It does not tilt the map. A map of it, far larger than the photographs, is refused."""
+        vertices, faces = wall()
+        corners, face = face_at(80, 60, 200, len(vertices), side=0.05)
+        write(self.mesh, mesh_ply(vertices + corners, faces + [face]))
+        self.refuses_and_keeps(f"{self.mesh}: the map would have 7305 x 5487 pixels of 0.011 m", *self.map())
+        said = self.succeeds(*self.map("--gsd", "0.1")).stdout
+        self.assertIn("up: 0.0000 0.0000 -1.0000", re.sub(r"-(0\.0000)", r"\1", said))
+
+
 class WrongInput(MapTest):
     def test_one_line_that_names_the_fault(self):
         for expected, *arguments in (
@@ -190,7 +287,22 @@ class WrongInput(MapTest):
 
     def test_a_full_disk_leaves_the_old_maps(self):
         self.succeeds(*self.map())
-        self.refuses_and_keeps("scene_map.", *self.map("--gsd", "0.001"), file_size_limit=100_000)
+        for arguments in (("--gsd", "0.001"), ("--contours", "0.000002", "--up", "0,0.01,-1")):
+            said = self.refuses_and_keeps("cannot be written", *self.map(*arguments), file_size_limit=100_000)
+            # In our words, with the reason, and not with the name of a temporary file.
+            self.assertRegex(said.stderr, r"scene_map\.\w+\.\w+: cannot be written: File too large\n$")
+
+    def test_little_memory_is_one_line_that_names_what_it_is_for(self):
+        ends = set()
+        for megabytes in (*range(240, 330, 6), 3000):
+            ended = run(*self.map(), "--max-threads", 1, address_space=megabytes * 1_000_000)
+            said = f"{megabytes} MB: {ended.returncode} {ended.stderr!r}"
+            self.assertIn(ended.returncode, (0, 1, 127), said)  # 127: the loader failed
+            ends.add(ended.returncode)
+            if ended.returncode == 1:
+                self.assertEqual(ended.stderr.count("\n"), 1, said)
+                self.assertNotRegex(ended.stderr, "TIFF|GDAL|VSI|CPL|Embree|bad_alloc", said)
+        self.assertLessEqual({0, 1}, ends)
 
     def test_help(self):
         self.assertEqual(run("MapSurface").returncode, 1)

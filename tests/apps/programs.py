@@ -17,24 +17,28 @@ import scenes
 BIN = os.environ.get("AXIAL_BIN", "")
 
 
-def run(program, *arguments, file_size_limit=None, cwd=None, timeout=600):
-    """Runs a program to its end. `file_size_limit` [bytes] simulates a full disk. If
+def run(program, *arguments, file_size_limit=None, address_space=None, cwd=None, timeout=600):
+    """Runs a program to its end. `file_size_limit` [bytes] simulates a full disk, and `address_space`
+    [bytes] little memory. If
     SimulateUnderwater rendered a scene from the same arguments before, the scene is copied
     (scenes.py)."""
 
     def limit():
         # With the signal ignored, a write beyond the limit fails with an error, as on a full disk.
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (file_size_limit, file_size_limit))
+        for kind, most in ((resource.RLIMIT_FSIZE, file_size_limit), (resource.RLIMIT_AS, address_space)):
+            if most is not None:
+                resource.setrlimit(kind, (most, most))
 
     def execute(command):
         return subprocess.run(
             command, cwd=cwd, text=True, errors="replace", stdout=subprocess.PIPE,
             stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, timeout=timeout,
-            preexec_fn=limit if file_size_limit is not None else None)
+            preexec_fn=limit if limited else None)
 
+    limited = file_size_limit is not None or address_space is not None
     command = [os.path.join(BIN, program), *map(str, arguments)]
-    if file_size_limit is None and scenes.can_be_shared(command):
+    if not limited and scenes.can_be_shared(command):
         return scenes.rendered(command, execute)
     return execute(command)
 

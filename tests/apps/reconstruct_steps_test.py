@@ -167,17 +167,17 @@ class WithStandIns(StandIns):
         self.assertEqual(said.returncode, 0, said.stderr)
         out, commands = self.folder / "out", (self.folder / "commands").read_text().splitlines()
         self.assertEqual(commands[-1], f"CompareSurveys -i {self.folder}/before/scene_dense_mesh.ply "
-                         f"--other {out}/scene_dense_mesh.ply -o {out}/scene_change --align icp")
+                         f"--other {out}/scene_dense_mesh.ply -o {out}/scene --align icp")
         self.assertEqual([line for line in commands for name in ("RefineMesh", "TextureMesh", "MapS")
                           if line.startswith(name)], [])
-        self.assertIn(f"Mesh: {out}/scene_dense_mesh.ply   Changes: {out}/scene_change.*   Report:",
+        self.assertIn(f"Mesh: {out}/scene_dense_mesh.ply   Changes: {out}/scene.change.*   Report:",
                       said.stdout)
         (self.folder / "before" / "scene_dense_refined.ply").touch()
         (self.folder / "before" / "scene_dense.mvs").touch()
         self.ended("--earlier", "before", "--without", "map,page", "--compare=--align none")
         commands = (self.folder / "commands").read_text().splitlines()
         self.assertEqual(commands[-1], f"CompareSurveys -i {self.folder}/before/scene_dense_refined.ply "
-                         f"--other {out}/scene_dense_refined.ply -o {out}/scene_change --scene "
+                         f"--other {out}/scene_dense_refined.ply -o {out}/scene --scene "
                          f"{self.folder}/before/scene_dense.mvs --other-scene {out}/scene_dense.mvs "
                          "--align none")
 

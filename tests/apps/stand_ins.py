@@ -38,7 +38,7 @@ case "$name $*" in
   ReconstructMesh*) touch out/scene_dense_mesh.ply ;;
   RefineMesh*) touch out/scene_dense_refined.ply ;;
   TextureMesh*) touch out/scene_textured.glb out/scene_textured.ply ;;
-  CompareSurveys*) touch out/scene_change.json ;;
+  CompareSurveys*) touch out/scene.change.json ;;
   MapSurface*) touch out/scene_map.dem.tif out/scene_map.ortho.tif out/scene_map.views.tif ;;
 esac
 """

@@ -61,6 +61,14 @@ class Files(TextureTest):
         self.succeeds(*self.texture("-o", "a.v2"))
         self.assertLess({"a.v2.ply", "a.v20.png"}, files_below(self.work))
 
+    def test_a_mesh_that_is_inside_out_is_told(self):
+        told = f"warning: {self.mesh}: the mesh is inside out: the cameras see 100 % of its faces from behind"
+        self.assertNotIn("inside out", self.succeeds(*self.texture()).stdout)
+        vertices, faces = wall()
+        write(self.mesh, mesh_ply(vertices, [face[::-1] for face in faces]))
+        ended = run(*self.texture())
+        self.assertIn(told, ended.stdout)
+
     def test_missing_folders_are_made(self):
         self.succeeds(*self.texture("-o", "new/deep/out.ply"))
         self.assertLess({"new/deep/out.ply", "new/deep/out0.png"}, files_below(self.work))

@@ -154,5 +154,6 @@ class TinyScene(ProgramTest):
 
     def refuses_and_keeps(self, expected, *command, **options):
         before = contents(self.folder)
-        self.refuses(expected, *command, **options)
+        result = self.refuses(expected, *command, **options)
         self.assertEqual(contents(self.folder), before, command)
+        return result

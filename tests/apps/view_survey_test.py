@@ -69,7 +69,9 @@ def pixels(png):
 class SurveyCase(ViewCase):
     @classmethod
     def setUpClass(cls):
-        """Maps, changes and depth maps, made once: work/{map,change}.* and work/depth*.dmap."""
+        """Maps, changes and depth maps, made once: work/{map,survey}.* and work/depth*.dmap. The
+        cameras look along z, which is up: so MapSurface maps the lower side of the wall, and says so.
+        CompareSurveys takes meshes whose faces are turned up."""
         made = cls("setUp")
         made.setUp()
         cls.addClassCleanup(made.doCleanups)
@@ -77,13 +79,14 @@ class SurveyCase(ViewCase):
         tilted = [(x, y, height(x)) for x, y, _ in vertices]
         raised = [(x, y, z + 0.03 * (max(abs(x), abs(y)) < BLOCK - 0.01)) for x, y, z in tilted]
         for name, corners in (("before", tilted), ("after", raised)):
-            write(made.path("work", name + ".ply"), utm(mesh_ply(corners, faces)))
+            write(made.path("work", name + ".ply"), utm(mesh_ply(corners, [face[::-1] for face in faces])))
+        write(made.path("work", "seen.ply"), utm(mesh_ply(tilted, faces)))
         made.succeeds(*DENSIFY, "-i", made.scene, "-w", made.work)
         made.place_in_utm()
-        made.succeeds("MapSurface", "-i", made.scene, "-w", made.work, "-m", "before.ply", "-o", "map",
+        made.succeeds("MapSurface", "-i", made.scene, "-w", made.work, "-m", "seen.ply", "-o", "map",
                       "--gsd", PIXEL, "--housing", made.port)
         made.succeeds("CompareSurveys", "-i", "before.ply", "-w", made.work, "--other", "after.ply", "-o",
-                      "change", "--gsd", PIXEL, "--sigma-before", 0.001, "--sigma-after", 0.001)
+                      "survey", "--gsd", PIXEL, "--sigma-before", 0.001, "--sigma-after", 0.001)
         cls.made = made
 
     def place_in_utm(self):
@@ -97,12 +100,12 @@ class SurveyCase(ViewCase):
             return
         self.place_in_utm()
         for name in os.listdir(self.made.work):
-            if re.match(r"map\.|change\.|depth", name):
+            if re.match(r"map\.|survey\.|depth", name):
                 shutil.copy(os.path.join(self.made.work, name), self.work)
         write(self.path("work", "run.json"), json.dumps(RUN))
 
     def survey(self, *more):
-        return self.view("--map", "map", "--change", "change", "--run", "run.json", *more)
+        return self.view("--map", "map", "--change", "survey", "--run", "run.json", *more)
 
     def shown(self):
         """The description of the scene, data/scene.js."""
@@ -142,12 +145,42 @@ class Folder(SurveyCase):
         self.assertFalse([name for name in files_below(self.report) if name.startswith(("maps/", "depth/"))])
 
     def test_errors_of_heights_are_shown_if_there_are_some(self):
-        shutil.copy(self.path("work", "change.sigma.tif"), self.path("work", "map.sigma.tif"))
-        shutil.copy(self.path("work", "change.difference.tif"), self.path("work", "map.dem.tif"))
-        for name in ("ortho", "views"):  # of the same pixels as the comparison
-            self.assertEqual(read_geotiff(read(self.path("work", f"map.{name}.tif"))).pixel, PIXEL)
+        shown = lambda: [layer["id"] for layer in self.shown()["map"]["layers"]]
         self.succeeds(*self.view("--map", "map"))
-        self.assertIn("sigma", [layer["id"] for layer in self.shown()["map"]["layers"]])
+        self.assertIn("sigma", shown())
+        os.remove(self.path("work", "map.sigma.tif"))
+        self.succeeds(*self.view("--map", "map"))
+        self.assertNotIn("sigma", shown())
+
+    def test_a_mesh_that_is_inside_out_is_told(self):
+        seen, other = (self.made.path("work", name) for name in ("seen.ply", "before.ply"))
+        self.assertNotIn("inside out", self.succeeds(*self.view("-m", seen)).stdout)
+        self.assertIn(f"warning: {other}: the mesh is inside out", self.succeeds(*self.view("-m", other)).stdout)
+
+    def test_a_map_of_another_kind_is_refused(self):
+        """Their bands and pixels are the same."""
+        def refused(expected, source, name):
+            kept = read(self.path("work", name))
+            shutil.copy(self.path("work", source), self.path("work", name))
+            self.refuses_and_keeps(f"{name}: {expected}", *self.survey())
+            write(self.path("work", name), kept)
+
+        refused("AXIALMVS_KIND change.sigma: must be map.sigma, as MapSurface writes it",
+                "survey.change.sigma.tif", "map.sigma.tif")
+        refused("AXIALMVS_KIND change.difference: must be map.dem", "survey.change.difference.tif", "map.dem.tif")
+        refused("AXIALMVS_KIND map.sigma: must be change.sigma, as CompareSurveys writes it",
+                "map.sigma.tif", "survey.change.sigma.tif")
+        # A file that states nothing: the item's name in the file is another one.
+        unnamed = self.path("work", "unnamed.tif")
+        write(unnamed, read(self.path("work", "map.sigma.tif")).replace(b"AXIALMVS_KIND", b"AXIALMVS_NOTE"))
+        refused("AXIALMVS_KIND is missing: must be map.sigma", "unnamed.tif", "map.sigma.tif")
+
+    def test_maps_and_changes_can_have_the_same_prefix(self):
+        for name in os.listdir(self.work):
+            if name.startswith("survey.change"):
+                shutil.copy(self.path("work", name), self.path("work", name.replace("survey", "map")))
+        self.succeeds(*self.view("--map", "map", "--change", "map"))
+        self.assertEqual(len(self.shown()["map"]["layers"]), 7)
 
     def test_damaged_depth_maps_are_left_out_unless_they_are_asked_for(self):
         path = self.path("work", "depth0001.dmap")
@@ -165,8 +198,8 @@ class Folder(SurveyCase):
                                *self.view("--depth-maps", "empty"))
 
     def test_wrong_files_are_refused(self):
-        whole = {name: read(self.path("work", name)) for name in ("map.dem.tif", "map.ortho.tif", "change.json")}
-        change = json.loads(whole["change.json"])
+        whole = {name: read(self.path("work", name)) for name in ("map.dem.tif", "map.ortho.tif", "survey.change.json")}
+        change = json.loads(whole["survey.change.json"])
 
         def refused(expected, name, data):
             write(self.path("work", name), data)
@@ -178,9 +211,9 @@ class Folder(SurveyCase):
         refused("map.dem.tif: has 4 bands of Byte, but a map of heights has 1 band of Float32",
                 "map.dem.tif", whole["map.ortho.tif"])
         refused("map.dem.tif: ", "map.dem.tif", whole["map.dem.tif"][:300])
-        refused("change.json: ", "change.json", "{")
-        refused("change.json: came.volume is missing", "change.json", json.dumps({**change, "came": {}}))
-        refused('change.json: regions[0].x "a": must be a number', "change.json",
+        refused("survey.change.json: ", "survey.change.json", "{")
+        refused("survey.change.json: came.volume is missing", "survey.change.json", json.dumps({**change, "came": {}}))
+        refused('survey.change.json: regions[0].x "a": must be a number', "survey.change.json",
                 json.dumps({**change, "regions": [{**change["regions"][0], "x": "a"}]}))
         for expected, run in (("the content []: must be an object", []),
                               ("steps is missing", {"command": []}),
@@ -191,7 +224,7 @@ class Folder(SurveyCase):
             refused("run.json: " + expected, "run.json", json.dumps(run))
         refused("run.json: malformed JSON: more than 1000 ", "run.json", "[" * 10**6 + "]" * 10**6)
         self.refuses_and_keeps("none.dem.tif: ", *self.view("--map", "none"))
-        self.refuses_and_keeps("none.json: ", *self.view("--change", "none"))
+        self.refuses_and_keeps("none.change.json: ", *self.view("--change", "none"))
         self.refuses_and_keeps("none.json: ", *self.view("--run", "none.json"))
         self.refuses_and_keeps("--map-size 1: must be from 16", *self.view("--map-size", 1))
 
@@ -213,8 +246,8 @@ class Folder(SurveyCase):
 
     def test_maps_of_other_planes_are_refused(self):
         self.succeeds("CompareSurveys", "-i", self.made.path("work", "before.ply"), "-w", self.work, "--other",
-                      self.made.path("work", "after.ply"), "-o", "change", "--up", "0,0.2,1", "--gsd", PIXEL)
-        said = self.refuses("change.difference.tif: has other axes than", *self.survey())
+                      self.made.path("work", "after.ply"), "-o", "survey", "--up", "0,0.2,1", "--gsd", PIXEL)
+        said = self.refuses("survey.change.difference.tif: has other axes than", *self.survey())
         self.assertIn("map.dem.tif; give MapSurface and CompareSurveys the same --up", said.stderr)
 
 
@@ -318,7 +351,7 @@ class Page(SurveyCase):
 
     def check_changes(self, page):
         text = page.value("document.getElementById('map').innerText")
-        report = json.loads(read(self.path("work", "change.json")))
+        report = json.loads(read(self.path("work", "survey.change.json")))
         self.assertEqual(len(report["regions"]), 1)
         self.assertIn(f"{1e6 * report['came']['volume']:.1f} ± {1e6 * report['came']['volume_sigma']:.1f} cm³", text)
         page.value("document.querySelector('[data-region=\"0\"]').click()")

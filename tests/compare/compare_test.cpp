@@ -209,10 +209,12 @@ TEST(Compare, NeedsMemory) {
 
 TEST(UpwardDirection, IsOnTheSideOfTheFaces) {
   const Mesh mesh = survey_before();
-  EXPECT_GT(upward_direction(mesh).z(), 0.99);
+  EXPECT_GT(upward_direction(mesh, mean_normal(mesh)).z(), 0.99);
   Mesh turned = mesh;
   for (auto& face : turned.faces) std::swap(face[0], face[1]);
-  EXPECT_LT(upward_direction(turned).z(), -0.99);
+  EXPECT_LT(upward_direction(turned, mean_normal(turned)).z(), -0.99);
+  // The side that cameras see counts, if it is known.
+  EXPECT_GT(upward_direction(turned, {0, 0, 0.5}).z(), 0.99);
   EXPECT_NEAR(vertex_distance(surveyed({.noise = 0}, [](double, double) { return 0.0; })), 0.0125,
               0.0002);
 }

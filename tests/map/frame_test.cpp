@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "map/up_direction.h"
 #include "support/error_of.h"
 
 namespace axial::map {
@@ -73,9 +74,80 @@ TEST(MapFrame, UpIsNormalToThePlaneOfTheSurface) {
   EXPECT_LT((fitted_up(mesh, above) + fitted_up(mesh, below)).norm(), 1e-12);
 }
 
+// A hilly square of 2 m with faces of 0.1 m, turned by some angle.
+Mesh hills() {
+  const auto turn =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(0.2, -0.3, 1));
+  Mesh mesh;
+  constexpr std::uint32_t kCells = 20;
+  for (std::uint32_t j = 0; j <= kCells; ++j)
+    for (std::uint32_t i = 0; i <= kCells; ++i) {
+      const double x = 0.1 * i, y = 0.1 * j;
+      mesh.vertices.push_back(
+          (turn * Eigen::Vector3d(x, y, 0.1 * std::sin(5 * x + 3 * y))).cast<float>());
+    }
+  for (std::uint32_t j = 0; j < kCells; ++j)
+    for (std::uint32_t i = 0; i < kCells; ++i) {
+      const std::uint32_t a = j * (kCells + 1) + i;
+      mesh.faces.push_back({a, a + 1, a + kCells + 2});
+      mesh.faces.push_back({a, a + kCells + 2, a + kCells + 1});
+    }
+  return mesh;
+}
+
+void add_face(Mesh& mesh, const Eigen::Vector3f& place, float side) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.push_back(place);
+  mesh.vertices.push_back(place + Eigen::Vector3f(side, 0, 0));
+  mesh.vertices.push_back(place + Eigen::Vector3f(0, side, 0));
+  mesh.faces.push_back({first, first + 1, first + 2});
+}
+
+// One face 200 m away would tilt the plane by some degrees, or up to the direction to the face.
+TEST(FittedPlane, FacesFarAwayDoNotTiltIt) {
+  const Mesh mesh = hills();
+  const FittedPlane plain = fitted_plane(mesh);
+  for (const Eigen::Vector3f& place :
+       {Eigen::Vector3f(0, 0, 200), Eigen::Vector3f(200, 0, 30), Eigen::Vector3f(-90, 120, -130)})
+    for (const float side : {0.01f, 0.1f, 0.3f}) {
+      Mesh with_stray = mesh;
+      add_face(with_stray, place, side);
+      const FittedPlane found = fitted_plane(with_stray);
+      EXPECT_EQ(found.normal, plain.normal);
+      EXPECT_EQ(found.point, plain.point);
+    }
+}
+
+TEST(FittedPlane, LargePartsFarAwayBelongToTheSurface) {
+  Mesh mesh = hills();
+  // 10 % of the area, at ten times the size of the hills.
+  for (int i = 0; i < 10; ++i) add_face(mesh, {20.f + 0.3f * static_cast<float>(i), 0, 5}, 0.3f);
+  EXPECT_GT(fitted_plane(mesh).normal.cross(fitted_plane(hills()).normal).norm(), 0.1);
+}
+
+TEST(FittedPlane, FacesInThePlaneDoNotChangeIt) {
+  Mesh mesh = hills();
+  const FittedPlane plain = fitted_plane(mesh);
+  // On the plane, far away: the plane of all faces is as good as that without the face, and counts.
+  const Eigen::Vector3d along = plain.normal.unitOrthogonal();
+  add_face(mesh, (plain.point + 20 * along).cast<float>(), 0.01f);
+  const FittedPlane found = fitted_plane(mesh);
+  EXPECT_LT(found.normal.cross(plain.normal).norm(), 1e-3);
+  EXPECT_NE(found.point, plain.point);
+}
+
+TEST(UpDirection, KnowsTheFarSide) {
+  EXPECT_FALSE(shows_far_side({0, 0, 5}, {0, 0, 0.5}));
+  EXPECT_TRUE(shows_far_side({0, 0, 5}, {0, 0, -0.5}));
+  EXPECT_FALSE(shows_far_side({0, 0, 5}, {0.9, 0, -0.1}));  // a wall
+  EXPECT_FALSE(shows_far_side({0, 0, 5}, {0, 0, 0}));       // not known
+  EXPECT_EQ(up_text({-0.0, 0.25, -1}), "0,0.25,-1");
+}
+
 TEST(MapGrid, IsTheSmallestGridOnMultiplesOfThePixel) {
   Mesh mesh;
-  mesh.vertices = {{0.15f, 0.25f, 0}, {1.05f, 0.25f, 1}, {0.5f, 2.55f, 0}};
+  mesh.vertices = {{0.15f, 0.25f, 0}, {1.05f, 0.25f, 1}, {0.5f, 2.55f, 0}, {999, 999, 999}};
+  mesh.faces = {{0, 1, 2}};  // and a vertex that no face uses
   const MapFrame frame = frame_with_up({0, 0, 1}, {{500000, 4500000, 0}});
   const MapGrid grid = grid_around(mesh, frame, 0.1);
   EXPECT_NEAR(grid.left, 500000.1, 1e-9);

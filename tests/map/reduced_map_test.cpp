@@ -11,6 +11,9 @@
 #include <cstdint>
 #include <limits>
 
+#include "base/atomic_file.h"
+#include "base/out_of_memory.h"
+#include "map/stated_kind.h"
 #include "support/empty_folder.h"
 #include "support/error_of.h"
 
@@ -18,6 +21,8 @@ namespace axial::map {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AnyOf;
+using testing::EndsWith;
 using testing::HasSubstr;
 
 const MapGrid kUtm{500000.125, 4500000.5, 0.01, 1024, 512};
@@ -138,6 +143,52 @@ void edit(const fs::path& path, const std::function<void(GDALDatasetH)>& change)
   ASSERT_NE(file, nullptr);
   change(file);
   GDALClose(file);
+}
+
+TEST(ReducedMap, RefusesOtherKinds) {
+  const fs::path path = test::empty_folder() / "map.tif";
+  const auto error = [&] {
+    return test::error_of([&] { read_reduced_map(path, MapKind::heights, 64, kinds::kErrors); });
+  };
+  write(path, MapKind::heights, ramp());
+  EXPECT_THAT(error(), HasSubstr("map.tif: AXIALMVS_KIND is missing: must be map.sigma, as "
+                                 "MapSurface writes it"));
+  EXPECT_EQ(stated_kind(path), "");
+  edit(path, [](GDALDatasetH file) {
+    GDALSetMetadataItem(file, "AXIALMVS_KIND", kinds::kSigma, nullptr);
+  });
+  EXPECT_EQ(stated_kind(path), "change.sigma");
+  EXPECT_THAT(error(), HasSubstr("map.tif: AXIALMVS_KIND change.sigma: must be map.sigma"));
+  EXPECT_NO_THROW(read_reduced_map(path, MapKind::heights, 64, kinds::kSigma));
+  EXPECT_EQ(stated_kind(path.parent_path() / "none.tif"), "");
+}
+
+// GDAL's and libtiff's words would name temporary files and functions.
+TEST(ReducedMap, DamagedFilesAreNamedInOurWords) {
+  const fs::path path = test::empty_folder() / "map.tif";
+  write(path, MapKind::heights, ramp());
+  const std::string whole = read_file(path);
+  const auto error = [&] {
+    return test::error_of([&] { read_reduced_map(path, MapKind::heights, 1 << 14); });
+  };
+  fs::remove(path);
+  EXPECT_THAT(error(), EndsWith("map.tif: cannot be read: it does not exist"));
+  write_atomically(path, whole.substr(0, 300));
+  EXPECT_THAT(error(), EndsWith("map.tif: cannot be read: it is no GeoTIFF, or it is damaged"));
+  for (const int tag : {322, 323}) {  // sizes of the tiles
+    std::string damaged = whole;
+    const std::string entry{
+        static_cast<char>(tag & 255), static_cast<char>(tag >> 8), 3, 0, 1, 0, 0, 0};
+    const std::size_t at = whole.find(entry);
+    ASSERT_NE(at, std::string::npos) << tag;
+    damaged[at + 2] = 4;  // a number of 32 bits
+    damaged.replace(at + 8, 4, std::string("\xF0\xFF\xFF\x7F", 4));
+    write_atomically(path, damaged);
+    const std::string said = error();
+    EXPECT_THAT(said, HasSubstr("map.tif: ")) << tag;
+    EXPECT_THAT(said, AnyOf(HasSubstr("damaged"), HasSubstr("geotransform"))) << tag;
+    EXPECT_FALSE(is_out_of_memory(Error(said))) << tag;
+  }
 }
 
 TEST(ReducedMap, RefusesForeignFiles) {

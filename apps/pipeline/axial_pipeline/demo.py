@@ -170,7 +170,7 @@ def run(demo):
     make_surveys(demo)
     evaluate_all(demo, poses)
     demo.stage(f"Done: {OUT}/{{air,refractive,selfcalibrated}}.ply, {OUT}/{{air,refractive}}.glb, "
-               f"{OUT}/{{air,refractive}}_map.*, {OUT}/change.*, {OUT}/refractive_page/index.html, "
+               f"{OUT}/{{air,refractive}}_map.*, {OUT}/surveys.change.*, {OUT}/refractive_page/index.html, "
                f"{OUT}/table.json, {OUT}/report.html")
     write_results(demo)
 

@@ -9,7 +9,7 @@ from . import files
 from .running import shown
 
 UP = ("--up", "0,0,1")  # in the simulated world
-CHANGE = "change"  # begin of the names of the files of the comparison
+CHANGE = "surveys"  # begin of the names of the files of the comparison
 
 
 def refractive(housing):
@@ -43,7 +43,7 @@ def make_page(demo, run, results, housing=None):
 
 def falsely_changed(results):
     """The share of the compared area that the comparison calls changed."""
-    change = json.loads((results / f"{CHANGE}.json").read_text())
+    change = json.loads((results / f"{CHANGE}.change.json").read_text())
     return change["area_changed"] / change["area_compared"]
 
 

@@ -21,12 +21,13 @@ WRITES = {
     "poses": ["colmap"],
     "refine": ["refined"],
     "import": ["scene.mvs", "scene.housing.json", "scene.lenses.json", "scene.geo.json", "undistorted"],
-    "densify": ["scene_dense.*", "depth[0-9]*.*", "depth_inputs.json", "steps/plan.json"],
+    "densify": ["scene_dense.*", "depth[0-9]*.*", "depth_inputs.json", "depth_maps.lock",
+                "steps/plan.json"],
     "mesh": ["scene_dense_mesh.*"],
     "refine-mesh": ["scene_dense_refined.*"],
     "texture": ["scene_textured.*", "scene_textured_*"],
     "map": ["scene_map.*"],
-    "compare": ["scene_change.*"],
+    "compare": ["scene.change.*", "scene_change.*"],  # the last: of older versions
     "page": ["page", "run.json", "run.json.tmp"],
     "evaluate": ["evaluation.json"]}
 ORDER = list(WRITES)

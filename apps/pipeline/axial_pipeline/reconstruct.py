@@ -93,7 +93,7 @@ def results_of(given, out):
     if "map" in wanted:
         found.append(("Maps", out / "scene_map.*"))
     if "compare" in wanted:
-        found.append(("Changes", out / "scene_change.*"))
+        found.append(("Changes", out / "scene.change.*"))
     if "page" in wanted:
         found.append(("Page", out / "page" / "index.html"))
     return "   ".join(f"{name}: {path}" for name, path in [*found, ("Report", out / "report.md")])

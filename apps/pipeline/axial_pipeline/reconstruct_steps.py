@@ -143,7 +143,7 @@ def words_about_results(given, out):
     words = {"--run": out / RUN_FILE, "--sfm-model": out / "refined",
              **({"--truth": given.truth} if given.truth else {}),
              **({"--map": out / "scene_map"} if "map" in wanted else {}),
-             **({"--change": out / "scene_change"} if "compare" in wanted else {}),
+             **({"--change": out / "scene"} if "compare" in wanted else {}),
              **({"--depth-maps": out} if kept_maps else {})}
     return [word for option, value in words.items() if option not in again for word in (option, value)]
 
@@ -184,10 +184,10 @@ def survey_steps(given, out):
                    reads=[*reads_of("map", command, given), *reads_of("texture", command, given)],
                    anew=MadeBefore("map", out))  # not every command writes all of them again
     if "compare" in wanted:
-        command = programs.compare_surveys(given.earlier, best_mesh(given, out), out / "scene_change",
+        command = programs.compare_surveys(given.earlier, best_mesh(given, out), out / "scene",
                                            *words_about_surveys(given, scene, options["compare"]),
                                            *options["compare"])
-        yield Step("compare", command, makes=out / "scene_change.json",
+        yield Step("compare", command, makes=out / "scene.change.json",
                    reads=[given.earlier, earlier_scene(given, scene), *reads_of("compare", command, given)],
                    anew=MadeBefore("compare", out))
     if "page" in wanted:

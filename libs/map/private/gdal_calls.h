@@ -6,6 +6,7 @@
 #include <cpl_string.h>
 #include <gdal.h>
 
+#include <filesystem>
 #include <initializer_list>
 #include <memory>
 #include <string>
@@ -25,15 +26,19 @@ class GdalErrors {
   GdalErrors(const GdalErrors&) = delete;
   GdalErrors& operator=(const GdalErrors&) = delete;
 
-  // The first error since the object exists; empty if there was none.
-  const std::string& first() const { return first_; }
-  // Throws an Error "<subject>: <first error>" if there was an error, or if `works` is false.
-  void require(bool works, const std::string& subject) const;
+  // Throws an Error if there was an error since the object exists, or if `works` is false: that the
+  // file cannot be written, and why, in our words. GDAL's words are in the log of details.
+  void require_written(bool works, const std::filesystem::path& file) const;
+  // The same for a file that was read.
+  void require_read(bool works, const std::filesystem::path& file) const;
 
  private:
   static void CPL_STDCALL collect(CPLErr level, CPLErrorNum number, const char* message);
 
-  std::string first_;
+  // Of the first error.
+  bool failed_ = false;
+  CPLErrorNum number_ = CPLE_None;
+  int system_error_ = 0;  // errno
 };
 
 // GDAL's words "KEY=VALUE".
