@@ -27,7 +27,8 @@ void require_complete(const std::filesystem::path& path) {
   in.seekg(size - static_cast<std::streamoff>(end.size()));
   in.read(end.data(), static_cast<std::streamsize>(end.size()));
   std::erase_if(end, [](unsigned char c) { return std::isspace(c) != 0; });
-  if (!in || !end.ends_with("]}")) fail("{}: cannot be written completely", path.string());
+  if (!in || !end.ends_with("]}"))
+    fail("{}: cannot be written: only a part of it was written: is the disk full?", path.string());
 }
 
 }  // namespace

@@ -237,7 +237,7 @@ class FarFaces(MapTest):
         vertices, faces = wall()
         corners, face = face_at(80, 60, 200, len(vertices), side=0.05)
         write(self.mesh, mesh_ply(vertices + corners, faces + [face]))
-        self.refuses_and_keeps(f"{self.mesh}: the map would have 7305 x 5487 pixels of 0.011 m", *self.map())
+        self.refuses_and_keeps(f"{self.mesh}: the map would have 7306 x 5488 pixels of 0.011 m", *self.map())
         said = self.succeeds(*self.map("--gsd", "0.1")).stdout
         self.assertIn("up: 0.0000 0.0000 -1.0000", re.sub(r"-(0\.0000)", r"\1", said))
 
@@ -287,10 +287,13 @@ class WrongInput(MapTest):
 
     def test_a_full_disk_leaves_the_old_maps(self):
         self.succeeds(*self.map())
-        for arguments in (("--gsd", "0.001"), ("--contours", "0.000002", "--up", "0,0.01,-1")):
-            said = self.refuses_and_keeps("cannot be written", *self.map(*arguments), file_size_limit=100_000)
-            # In our words, with the reason, and not with the name of a temporary file.
-            self.assertRegex(said.stderr, r"scene_map\.\w+\.\w+: cannot be written: File too large\n$")
+        # In our words, with the reason, and not with the name of a temporary file.
+        for arguments, said in (
+                (("--gsd", "0.001"), r"\w+\.tif: cannot be written: File too large"),
+                (("--contours", "0.000002", "--up", "0,0.01,-1"),
+                 r"contours\.geojson: cannot be written: only a part of it was written: is the disk full\?")):
+            ended = self.refuses_and_keeps("scene_map.", *self.map(*arguments), file_size_limit=100_000)
+            self.assertRegex(ended.stderr, rf"scene_map\.{said}\n$")
 
     def test_little_memory_is_one_line_that_names_what_it_is_for(self):
         ends = set()
