@@ -113,8 +113,8 @@ void mend(HalfedgeMesh& mesh, const CleanOptions& options, CleanReport& report) 
   report.closed_holes += close_holes(mesh, options.close_holes);
 }
 
-// CGAL's remeshing does not end or crashes for a mesh without area. Long thin faces have a small
-// area, but their edges are split, too.
+// Remeshing does not end for a mesh without area. Long thin faces have a small area, but their
+// edges are split, too.
 void check_edge_length(const HalfedgeMesh& mesh, double length) {
   constexpr double kMostFaces = 1 << 28;
   const double equilateral = 0.433 * length * length;  // area

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <CGAL/Polygon_mesh_processing/remesh.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_stop_predicate.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/GarlandHeckbert_policies.h>
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
@@ -27,14 +26,6 @@ void decimate(HalfedgeMesh& mesh, std::size_t faces) {
   sms::edge_collapse(
       mesh, stop,
       CGAL::parameters::get_cost(policies.get_cost()).get_placement(policies.get_placement()));
-  mesh.collect_garbage();
-  round_to_float(mesh);
-}
-
-void remesh(HalfedgeMesh& mesh, double edge_length) {
-  CGAL::Polygon_mesh_processing::isotropic_remeshing(
-      mesh.faces(), edge_length, mesh,
-      CGAL::parameters::number_of_iterations(3).relax_constraints(true));
   mesh.collect_garbage();
   round_to_float(mesh);
 }
