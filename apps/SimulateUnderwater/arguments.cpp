@@ -14,9 +14,9 @@ namespace {
 
 void declare_scene(OptionList& visible, Arguments& a) {
   visible
-      .add_with_default(
-          "preset", &a.preset.name,
-          "reef, outcrop, closeup, survey, thicket, sand or transect; NAME-hazy: with haze 6/7")
+      .add_with_default("preset", &a.preset.name,
+                        "reef, outcrop, closeup, survey, thicket, sand, transect or amphora; "
+                        "NAME-hazy: with haze 6/7")
       .add_with_default("seed", &a.preset.seed, "seed of all random numbers")
       .add("output,o", &a.output, "folder of the scene (required)")
       .add_with_default("views", &a.preset.views, "number of images (0: the preset's number)")

@@ -54,10 +54,11 @@ void add_two_rows(Preset& preset, int views, double height, RandomSequence& rand
 // ring, the others in a narrower ring above it.
 void add_two_rings(Preset& preset, int views, double range, RandomSequence& random);
 
-// Fill `preset` with the presets "thicket", "sand" and "transect" (presets.h), with `views` views.
-// Precondition: preset.lens is set.
+// Fill `preset` with the presets "thicket", "sand", "transect" and "amphora" (presets.h), with
+// `views` views. Precondition: preset.lens is set.
 void make_thicket(Preset& preset, std::uint32_t seed, int views);
 void make_sand(Preset& preset, std::uint32_t seed, int views);
 void make_transect(Preset& preset, std::uint32_t seed, int views);
+void make_amphora(Preset& preset, std::uint32_t seed, int views);
 
 }  // namespace axial::simulate

@@ -203,15 +203,15 @@ Preset make_preset(const PresetOptions& options) {
     void (*make)(Preset& preset, std::uint32_t seed, int views);
     int views;
   };
-  constexpr Named kAll[] = {{"reef", make_reef, 10},        {"outcrop", make_outcrop, 10},
-                            {"closeup", make_closeup, 12},  {"survey", make_survey, 50},
-                            {"thicket", make_thicket, 12},  {"sand", make_sand, 10},
-                            {"transect", make_transect, 12}};
+  constexpr Named kAll[] = {{"reef", make_reef, 10},         {"outcrop", make_outcrop, 10},
+                            {"closeup", make_closeup, 12},   {"survey", make_survey, 50},
+                            {"thicket", make_thicket, 12},   {"sand", make_sand, 10},
+                            {"transect", make_transect, 12}, {"amphora", make_amphora, 12}};
   const auto found = std::ranges::find(kAll, name, [](const Named& one) { return one.name; });
   if (found == std::end(kAll))
     fail(
-        "preset '{}' is unknown: must be reef, outcrop, closeup, survey, thicket, sand or "
-        "transect, or one of them with haze: NAME-hazy",
+        "preset '{}' is unknown: must be reef, outcrop, closeup, survey, thicket, sand, "
+        "transect or amphora, or one of them with haze: NAME-hazy",
         options.name);
   found->make(preset, options.seed, options.views > 0 ? options.views : found->views);
   if (options.changed) {

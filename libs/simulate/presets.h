@@ -64,6 +64,8 @@ struct Preset {
 //   that of the image noise.
 // - "transect": one strip at the height of "reef". Successive views overlap by 55 % under water, so
 //   that most of the ground is seen by exactly two views.
+// - "amphora": views around a leaning vessel with a neck and two handles amid blocks, which hide
+//   much of the ground and of each other, through the port of "closeup".
 //
 // "NAME-hazy" is the preset NAME in haze that leaves a seventh of the contrast. Throws an Error for
 // another name, for `changed` with another preset than "reef" and for a reef without a boulder that
