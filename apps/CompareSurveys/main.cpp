@@ -22,6 +22,7 @@
 #include "io/textured/textured_mesh.h"
 #include "map/up_direction.h"
 #include "scene/check_mesh.h"
+#include "scene/marked_faces.h"
 #include "settings.h"
 
 namespace axial::apps {
@@ -47,6 +48,8 @@ Mesh read_survey(const Settings& settings, const fs::path& path, const LocalFram
   Mesh mesh = io::read_shape(path, frame);
   mesh.colors = {};
   naming(path, [&] { check_mesh(mesh); });
+  remove_marked_faces(mesh);
+  if (mesh.faces.empty()) fail("{}: all faces are marked as unseen", path.string());
   log_info("{}: {} vertices, {} faces", path.string(), mesh.vertices.size(), mesh.faces.size());
   return_freed_memory();
   return mesh;

@@ -25,6 +25,7 @@
 #include "map/up_direction.h"
 #include "map/write_maps.h"
 #include "scene/check_mesh.h"
+#include "scene/marked_faces.h"
 #include "settings.h"
 #include "texture/texture_mesh.h"
 
@@ -84,6 +85,12 @@ TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame) {
   log_info("{}: {} vertices, {} faces, {} textures", settings.mesh.string(),
            mesh.mesh.vertices.size(), mesh.mesh.faces.size(), mesh.textures.size());
   mesh.mesh.colors = {};  // the textures give the colours
+  const std::size_t unseen = naming(settings.mesh, [&] {
+    check_mesh(mesh.mesh);
+    return remove_marked_faces(mesh);
+  });
+  if (unseen > 0) log_info("{} faces are left out: they are marked as unseen", unseen);
+  if (mesh.mesh.faces.empty()) fail("{}: all faces are marked as unseen", settings.mesh.string());
   return mesh;
 }
 

@@ -7,12 +7,14 @@
 #include "base/naming.h"
 #include "base/output_lock.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "base/same_file.h"
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
 #include "io/textured/textured_mesh.h"
+#include "mesh/unseen.h"
 #include "options.h"
 #include "scene/region.h"
 #include "tiled.h"
@@ -55,16 +57,37 @@ Mesh reconstruct(const io::SceneWithCameras& scene, const Options& options) {
   });
 }
 
-Mesh clean_given(const io::SceneWithCameras& scene, const Options& options) {
+// Sets `keep` if the mesh has marks of unseen faces.
+Mesh clean_given(const io::SceneWithCameras& scene, const Options& options, bool& keep) {
   memory_of(options).require(io::bytes_to_read_mesh(options.mesh),
                              "reading " + options.mesh.string());
   const Mesh mesh = io::read_mesh_of_scene(scene.frame, options.mesh);
+  keep = keep || !mesh.unseen.empty();
   memory_of(options).require(mesh::bytes_to_clean(mesh.vertices.size()),
                              "cleaning " + options.mesh.string());
   return naming(options.mesh, [&] { return mesh::clean(mesh, options.reconstruct.clean); });
 }
 
+// Removes or marks the surface that no two cameras see.
+Mesh without_unseen(Mesh mesh, const Scene& scene, const Options& options, bool keep) {
+  memory_of(options).require(mesh::bytes_of_unseen(mesh),
+                             "finding the surface that no two cameras see");
+  const fs::path& source = options.mesh.empty() ? options.scene.scene : options.mesh;
+  mesh::UnseenOptions unseen;
+  unseen.keep = keep;
+  const mesh::CleanOptions& clean = options.reconstruct.clean;
+  unseen.large_faces = options.mesh.empty() && clean.decimate == 1 && clean.target_faces == 0 &&
+                       clean.edge_length == 0;
+  unseen.cut_off = clean.cut_off;
+  return naming(source, [&] {
+    return mesh::treat_unseen(std::move(mesh), mesh::cameras_of(scene), unseen,
+                              console_progress("Looked"));
+  });
+}
+
 void write(const fs::path& file, const Mesh& mesh, const LocalFrame& frame) {
+  if (!mesh.unseen.empty() && file.extension() != ".ply")
+    log_warning("{}: only PLY has marks of unseen faces: use --export-type ply", file.string());
   io::write_mesh(file, mesh, frame);
   log_info("{}: {} vertices, {} faces", file.string(), mesh.vertices.size(), mesh.faces.size());
 }
@@ -87,11 +110,13 @@ int run(int argc, char** argv) {
     make_tile(scene, options);
     return 0;
   }
-  write(options.output,
-        options.tiles > 1      ? join_tiles(scene, options)
-        : options.mesh.empty() ? reconstruct(scene, options)
-                               : clean_given(scene, options),
-        scene.frame);
+  bool keep = options.close_unseen;
+  Mesh mesh = options.tiles > 1      ? join_tiles(scene, options)
+              : options.mesh.empty() ? reconstruct(scene, options)
+                                     : clean_given(scene, options, keep);
+  return_freed_memory();
+  mesh = without_unseen(std::move(mesh), scene.scene, options, keep);
+  write(options.output, mesh, scene.frame);
   remove_tiles(options);
   return 0;
 }

@@ -89,6 +89,9 @@ void declare_cleaning(OptionList& list, Options& options) {
                         "remove faces that hang on the mesh by one edge")
       .add_with_default("close-holes", &clean.close_holes,
                         "close holes of at most this many edges (0: none)")
+      .add_with_default("close-unseen", &options.close_unseen,
+                        "keep surface that no two cameras see, and mark it, instead of removing it "
+                        "(with fewer than two cameras it is always kept)")
       .add_with_default("smooth", &clean.smooth, "number of smoothing steps")
       .add_with_default("edge-length", &clean.edge_length,
                         "remesh to edges of this length [scene units] (0: no)")

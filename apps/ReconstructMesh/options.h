@@ -20,6 +20,7 @@ struct Options {
   double roi_border = 0;
   std::uint64_t max_memory = 0;  // [MB of 10^6 bytes]; 0: 70 % of the free memory
   std::size_t tiles = 1;         // 1: the mesh is made in one piece
+  bool close_unseen = false;     // mark surface that no two cameras see instead of removing it
   std::size_t tile = 0;          // from 1: make only this tile; 0: make and join all tiles
   mesh::ReconstructOptions reconstruct;
 };

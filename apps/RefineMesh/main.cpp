@@ -19,6 +19,7 @@
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
 #include "io/textured/textured_mesh.h"
+#include "mesh/unseen.h"
 #include "options.h"
 #include "refine/state_file.h"
 
@@ -48,13 +49,16 @@ MemoryAllowance memory_of(const Options& options) {
   return {options.scene.max_memory, "--max-memory", densify::kProgramBytes};
 }
 
-Mesh read_mesh(const Options& options, const LocalFrame& frame) {
+// Sets `has_marks` if faces of the mesh are marked as unseen. The result has no marks.
+Mesh read_mesh(const Options& options, const LocalFrame& frame, bool& has_marks) {
   memory_of(options).require(io::bytes_to_read_mesh(options.mesh),
                              "reading " + options.mesh.string());
   Mesh mesh = io::read_mesh_of_scene(frame, options.mesh);
   if (mesh.faces.empty()) fail("{}: the mesh has no faces", options.mesh.string());
   log_info("Mesh {}: {} vertices, {} faces", options.mesh.filename().string(), mesh.vertices.size(),
            mesh.faces.size());
+  has_marks = !mesh.unseen.empty();
+  mesh.unseen = {};
   if (options.decimate == 1) return mesh;
   mesh::CleanOptions fewer = options.cleaning;
   fewer.decimate = options.decimate;
@@ -175,7 +179,19 @@ Mesh refine_mesh(Mesh mesh, const densify::Project& project, const Options& opti
   return std::move(state.mesh);
 }
 
+// Removes or marks the surface that no two cameras see.
+Mesh without_unseen(Mesh mesh, const densify::Project& project, bool keep) {
+  std::vector<geometry::PosedCamera> cameras;
+  for (const densify::View& view : project.views)
+    if (view.camera.width > 0) cameras.push_back({view.camera, view.pose});
+  mesh::UnseenOptions unseen;
+  unseen.keep = keep;
+  return mesh::treat_unseen(std::move(mesh), cameras, unseen, console_progress("Looked"));
+}
+
 void write(const fs::path& file, const Mesh& mesh, const LocalFrame& frame) {
+  if (!mesh.unseen.empty() && file.extension() != ".ply")
+    log_warning("{}: only PLY has marks of unseen faces: use --export-type ply", file.string());
   io::write_mesh(file, mesh, frame);
   log_info("{}: {} vertices, {} faces", file.string(), mesh.vertices.size(), mesh.faces.size());
 }
@@ -190,11 +206,15 @@ int run(int argc, char** argv) {
   const OutputLock lock(options.output);
   const densify::Project project = densify::load_scene_and_headers(options.scene);
   check_outputs(options, project);
-  Mesh mesh = read_mesh(options, project.frame);
+  bool has_marks = false;
+  Mesh mesh = read_mesh(options, project.frame, has_marks);
   StateOfRun state(state_file(options));
   mesh = refine_mesh(std::move(mesh), project, options, state);
   return_freed_memory();
-  mesh = naming(options.mesh, [&] { return mesh::clean(mesh, options.cleaning); });
+  mesh = naming(options.mesh, [&] {
+    return without_unseen(mesh::clean(mesh, options.cleaning), project,
+                          options.close_unseen || has_marks);
+  });
   state.writing([&] { write(options.output, mesh, project.frame); });
   state.remove();
   return 0;

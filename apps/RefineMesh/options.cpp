@@ -74,6 +74,9 @@ void declare_refinement(OptionList& list, Raw& raw, Options& options) {
                         "part of the faces to keep before refining, from 0 to 1 (0: all)")
       .add_with_default("close-holes", &raw.close_holes,
                         "close holes of at most this many edges (0: none)")
+      .add_with_default("close-unseen", &options.close_unseen,
+                        "keep surface that no two cameras see, and mark it, instead of removing it "
+                        "(a mesh with marks is always kept)")
       .add_with_default("max-face-area", &options.refine.max_face_area,
                         "faces are split until none is larger than this in two images [px^2] (0: "
                         "no face is split)")

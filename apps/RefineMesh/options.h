@@ -18,6 +18,7 @@ struct Options {
   std::filesystem::path mesh;    // .ply
   std::filesystem::path output;  // .ply, .obj or .glb
   double decimate = 1;           // fraction of the faces that are kept before refining
+  bool close_unseen = false;     // mark surface that no two cameras see instead of removing it
   mesh::CleanOptions cleaning;   // for the refined mesh
   refine::Options refine;
 };

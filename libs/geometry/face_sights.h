@@ -53,7 +53,20 @@ FaceSights count_sights(const Mesh& mesh, const Occluders& occluders,
                         std::span<const std::uint32_t> faces, std::span<const PosedCamera> cameras,
                         const SightOptions& options = {});
 
-// The memory [bytes] of count_sights() with its result.
+// Returns for each face how well the second best of the cameras sees it: the second largest cosine
+// of the angle between the path of light from the middle of the face and the smoothed normal of the
+// face, over the cameras that see the middle in the sense of count_sights(). The smoothed normal is
+// the mean of the normals at the corners, so that the noise of single faces does not matter. -1 if
+// fewer than two cameras see the middle. `enough`: larger cosines may be returned as any number
+// from `enough` on; faces that have it are not tested again, which saves most of the time in scenes
+// of many cameras. SightOptions::least_cosine has no effect. Progress, threads and Errors as for
+// count_sights().
+std::vector<float> second_cosines(const Mesh& mesh, std::span<const PosedCamera> cameras,
+                                  float enough, const SightOptions& options = {},
+                                  const ProgressSink& progress = {});
+
+// The memory [bytes] of count_sights() with its result, and of second_cosines() with its result.
 std::uint64_t bytes_of_sights(const Mesh& mesh);
+std::uint64_t bytes_of_cosines(const Mesh& mesh);
 
 }  // namespace axial::geometry

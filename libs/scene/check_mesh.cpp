@@ -15,6 +15,8 @@ void check_mesh(const Mesh& mesh) {
     if (!mesh.vertices[v].allFinite()) fail("vertex {} is not finite", v);
   if (!mesh.colors.empty() && mesh.colors.size() != vertices)
     fail("the mesh has {} colours, but {} vertices", mesh.colors.size(), vertices);
+  if (!mesh.unseen.empty() && mesh.unseen.size() != mesh.faces.size())
+    fail("the mesh has {} marks of faces, but {} faces", mesh.unseen.size(), mesh.faces.size());
 }
 
 }  // namespace axial

@@ -16,6 +16,9 @@ struct Mesh {
   std::vector<Eigen::Vector3f> vertices;            // finite
   std::vector<Rgb> colors;                          // empty or one per vertex
   std::vector<std::array<std::uint32_t, 3>> faces;  // indices into `vertices`
+  // Marks of the faces, empty or one per face: 1 if the place of the face was not seen by two
+  // cameras, so that the face only closes a gap (mesh/unseen.h); otherwise 0.
+  std::vector<std::uint8_t> unseen{};
 };
 
 }  // namespace axial

@@ -136,9 +136,11 @@ class Observer {
 
   std::vector<SeenFace> seen() {
     std::vector<SeenFace> result;
-    for (std::uint32_t face = 0; face < mesh_.faces.size(); ++face)
+    for (std::uint32_t face = 0; face < mesh_.faces.size(); ++face) {
+      if (!mesh_.unseen.empty() && mesh_.unseen[face]) continue;
       if (const std::optional<Sight> s = look_at(face))
         result.push_back({face, s->quality, s->color, s->whole});
+    }
     return result;
   }
 

@@ -58,6 +58,8 @@ struct ViewMemory {
 //      grid inside it. A point is hidden if a face crosses the path of light from the point to the
 //      place where the light leaves the water (exit_point of the camera).
 //
+// Marked faces (Mesh::unseen) get no views, but they hide other faces.
+//
 // If no view sees all of a face, the face gets the views that see its middle. Such a view satisfies
 // conditions 2 and 3, the middle of the face is not hidden, and the face or its smoothed normal is
 // turned towards the camera.

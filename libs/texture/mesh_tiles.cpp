@@ -67,6 +67,8 @@ MeshPart mesh_of_faces(const Mesh& mesh, std::span<const std::uint32_t> faces) {
   part.vertices.shrink_to_fit();
   part.mesh.vertices.reserve(part.vertices.size());
   for (const std::uint32_t v : part.vertices) part.mesh.vertices.push_back(mesh.vertices[v]);
+  for (const std::uint32_t f : faces)
+    if (!mesh.unseen.empty()) part.mesh.unseen.push_back(mesh.unseen[f]);
   part.mesh.faces.resize(faces.size());
   parallel_for(
       faces.size(),
@@ -84,7 +86,7 @@ std::uint64_t bytes_of_part(std::uint64_t vertices, std::uint64_t faces) {
   // The corners while they are sorted, with a copy that is cut; then positions and faces.
   const std::uint64_t sorted = faces * 3 * sizeof(std::uint32_t);
   const std::uint64_t indices = vertices * sizeof(std::uint32_t);
-  return indices + std::max(sorted, vertices * sizeof(Eigen::Vector3f) + faces * 3 * 4);
+  return indices + std::max(sorted, vertices * sizeof(Eigen::Vector3f) + faces * (3 * 4 + 1));
 }
 
 std::vector<std::uint32_t> faces_of(const FaceTiles& tiles, std::size_t tile) {

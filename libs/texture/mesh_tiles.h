@@ -35,7 +35,7 @@ std::uint64_t bytes_to_divide(const Mesh& mesh, std::size_t count);
 
 // Some faces of a mesh, as a mesh.
 struct MeshPart {
-  Mesh mesh;                            // without colours
+  Mesh mesh;                            // without colours; with the marks of its faces
   std::vector<std::uint32_t> vertices;  // one per vertex of `mesh`: its index in the whole mesh
 };
 

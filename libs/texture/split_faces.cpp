@@ -164,13 +164,16 @@ void append_parts(const Corners& face, const std::array<bool, 3>& marked, const 
 void split_marked(const Edges& edges, std::span<const char> marked, Mesh& mesh) {
   const std::vector<std::uint32_t> middle = add_middles(edges, marked, mesh);
   std::vector<Corners> faces;
+  std::vector<std::uint8_t> unseen;
   faces.reserve(mesh.faces.size());
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const Corners& e = edges.of_face[f];
     append_parts(mesh.faces[f], {marked[e[0]] != 0, marked[e[1]] != 0, marked[e[2]] != 0},
                  {middle[e[0]], middle[e[1]], middle[e[2]]}, faces);
+    if (!mesh.unseen.empty()) unseen.resize(faces.size(), mesh.unseen[f]);
   }
   mesh.faces = std::move(faces);
+  mesh.unseen = std::move(unseen);
 }
 
 }  // namespace

@@ -29,9 +29,10 @@ struct SplitOptions {
 //
 // Splitting ends early in two cases: after 16 rounds, or before a round that could give more than
 // max_faces faces (with a warning in the log). Faces stay joined along their edges. The parts of a
-// face take the place of the face in the order of the faces. Vertices keep their indices, and new
-// vertices follow. Returns by how many the number of faces has grown. Error if a round needs more
-// memory than `budget` allows; earlier rounds have then changed the mesh.
+// face take the place of the face in the order of the faces. The parts of a marked face are marked
+// (Mesh::unseen). Vertices keep their indices, and new vertices follow. Returns by how many the
+// number of faces has grown. Error if a round needs more memory than `budget` allows; earlier
+// rounds have then changed the mesh.
 std::size_t split_faces(Mesh& mesh, std::span<const View> views, const SplitOptions& options = {},
                         const Budget& budget = {});
 

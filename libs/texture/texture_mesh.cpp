@@ -13,7 +13,7 @@ namespace {
 
 std::uint64_t bytes_of(const Mesh& mesh) {
   return mesh.vertices.size() * sizeof(mesh.vertices[0]) + mesh.colors.size() * sizeof(Rgb) +
-         mesh.faces.size() * sizeof(mesh.faces[0]);
+         mesh.faces.size() * sizeof(mesh.faces[0]) + mesh.unseen.size();
 }
 
 }  // namespace

@@ -71,7 +71,8 @@ struct Report {
 using StageProgress = std::function<ProgressSink(const std::string& stage)>;
 
 // Returns `mesh` with textures. Each face gets the colours of one of the views that see the face,
-// as chosen by choose_views() (labels.h). A face that no view sees gets Options::empty_color. Faces
+// as chosen by choose_views() (labels.h). A face that no view sees, or that
+// is marked (Mesh::unseen), gets Options::empty_color. Marks are kept. Faces
 // stay in the same order, and the parts of a split face follow each other at the place of this
 // face. Vertices keep their indices, and the vertices that splitting adds follow. `report`, if
 // given, is filled. Options::tiles has no effect.

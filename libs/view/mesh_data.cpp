@@ -22,10 +22,11 @@ std::uint16_t fraction(float pixel, int side) {
   return static_cast<std::uint16_t>(std::lround(65535 * std::clamp(share, 0.0, 1.0)));
 }
 
-// Builds one part. `corner_of` returns the corner k of a face.
+// Builds one part. `corner_of` returns the corner k of a face. `color`: of all vertices; null: that
+// of each vertex.
 template <class CornerOf>
 MeshPart part_of(const Mesh& mesh, std::span<const std::uint32_t> faces, int texture,
-                 const CornerOf& corner_of) {
+                 const CornerOf& corner_of, const Rgb* color) {
   std::map<Corner, std::uint32_t> numbers;
   std::vector<Corner> corners;
   std::string indices;
@@ -38,14 +39,15 @@ MeshPart part_of(const Mesh& mesh, std::span<const std::uint32_t> faces, int tex
       append_u32(indices, at->second);
     }
   }
-  MeshPart part{corners.size(), faces.size(), texture, texture < 0 && !mesh.colors.empty(), {}};
+  MeshPart part{
+      corners.size(), faces.size(), texture, color || (texture < 0 && !mesh.colors.empty()), {}};
   for (const auto& [vertex, u, v] : corners)
     for (const float x : mesh.vertices[vertex]) append_f32(part.bytes, x);
   part.bytes += indices;
   for (const auto& [vertex, u, v] : corners) {
     if (texture >= 0) append_u16(part.bytes, u), append_u16(part.bytes, v);
     if (part.colors)
-      for (const std::uint8_t value : mesh.colors[vertex])
+      for (const std::uint8_t value : color ? *color : mesh.colors[vertex])
         part.bytes.push_back(static_cast<char>(value));
   }
   return part;
@@ -53,10 +55,11 @@ MeshPart part_of(const Mesh& mesh, std::span<const std::uint32_t> faces, int tex
 
 template <class CornerOf>
 void append_parts(const Mesh& mesh, std::span<const std::uint32_t> faces, int texture,
-                  std::size_t largest, const CornerOf& corner_of, std::vector<MeshPart>& parts) {
+                  std::size_t largest, const CornerOf& corner_of, std::vector<MeshPart>& parts,
+                  const Rgb* color = nullptr) {
   for (std::size_t begin = 0; begin < faces.size(); begin += largest)
     parts.push_back(part_of(mesh, faces.subspan(begin, std::min(largest, faces.size() - begin)),
-                            texture, corner_of));
+                            texture, corner_of, color));
 }
 
 }  // namespace
@@ -77,15 +80,15 @@ std::vector<MeshPart> mesh_parts(const TexturedMesh& mesh, std::size_t largest) 
 }
 
 std::vector<MeshPart> mesh_parts(const Mesh& mesh, std::size_t largest) {
-  std::vector<std::uint32_t> faces(mesh.faces.size());
-  for (std::size_t f = 0; f < faces.size(); ++f) faces[f] = static_cast<std::uint32_t>(f);
+  std::vector<std::uint32_t> seen, unseen;
+  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f)
+    (mesh.unseen.empty() || !mesh.unseen[f] ? seen : unseen).push_back(f);
   std::vector<MeshPart> parts;
-  append_parts(
-      mesh, faces, -1, largest,
-      [&](std::uint32_t face, std::size_t k) -> Corner {
-        return {mesh.faces[face][k], 0, 0};
-      },
-      parts);
+  const auto corner_of = [&](std::uint32_t face, std::size_t k) -> Corner {
+    return {mesh.faces[face][k], 0, 0};
+  };
+  append_parts(mesh, seen, -1, largest, corner_of, parts);
+  append_parts(mesh, unseen, -1, largest, corner_of, parts, &kUnseenColor);
   return parts;
 }
 

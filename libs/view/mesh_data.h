@@ -28,8 +28,12 @@ struct MeshPart {
 // texture. A vertex whose faces have different texture coordinates occurs several times.
 std::vector<MeshPart> mesh_parts(const TexturedMesh& mesh, std::size_t largest);
 
+// The colour of marked faces: that of faces without a view in a texture.
+inline constexpr Rgb kUnseenColor{255, 127, 39};
+
 // The same for a mesh without textures. The parts have the colours of the vertices, if there are
-// any.
+// any. Marked faces (Mesh::unseen) are in parts of their own, whose vertices all have the colour
+// kUnseenColor.
 std::vector<MeshPart> mesh_parts(const Mesh& mesh, std::size_t largest);
 
 }  // namespace axial::view

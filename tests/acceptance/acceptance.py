@@ -17,6 +17,7 @@ import photographs  # noqa: E402, F401
 import times  # noqa: E402, F401
 import quality  # noqa: E402, F401
 import meshes  # noqa: E402, F401
+import unseen  # noqa: E402, F401
 import maps  # noqa: E402, F401
 import surveys  # noqa: E402, F401
 import whole_programs  # noqa: E402, F401

@@ -94,6 +94,48 @@ class Mesh(Scene):
         half = PlyMesh(read(os.path.join(folder, "half.ply")))
         self.assertLess(abs(len(half.faces) - 500), 60)
 
+    def test_meshes_are_remeshed(self):
+        folder = self.mesh("air", "--edge-length", "0.005")
+        short = PlyMesh(read(os.path.join(folder, "scene_dense_mesh.ply")))
+        folder = self.mesh("air")
+        self.succeeds("ReconstructMesh", "-i", "scene_dense.mvs", "-w", folder, "--mesh-file",
+                      "scene_dense_mesh.ply", "-o", "long", "--edge-length", "0.01")
+        long = PlyMesh(read(os.path.join(folder, "long.ply")))
+        # Half the length: four times as many faces, if the borders were the same.
+        self.assertGreater(len(short.faces), 2.5 * len(long.faces))
+
+    @staticmethod
+    def marks(data):
+        """The marks of the faces of a mesh without texture; None if it has no marks."""
+        head, body = data.split(b"end_header\n", 1)
+        if b"property uint8 unseen\n" not in head:
+            return None
+        faces = int(head.split(b"element face ")[1].split(b"\n")[0])
+        return body[len(body) - 14 * faces:][13::14]
+
+    def test_surface_that_no_two_cameras_see_is_removed_or_marked(self):
+        folder = self.mesh("water", "--refractive")
+        seen = read(os.path.join(folder, "scene_dense_mesh.ply"))
+        self.assertIsNone(self.marks(seen))
+        self.succeeds("ReconstructMesh", "-i", "scene_dense.mvs", "-w", folder, "-o", "closed",
+                      "--refractive", "--close-unseen", "1")
+        marks = self.marks(read(os.path.join(folder, "closed.ply")))
+        self.assertGreater(sum(marks), 10)
+        self.assertLessEqual(len(PlyMesh(seen).faces), len(marks) - sum(marks))
+        self.assertGreater(len(PlyMesh(seen).faces), 0.9 * (len(marks) - sum(marks)))
+        # The marks go through the other programs.
+        inputs = ("-i", "scene_dense.mvs", "-w", folder, "--refractive")
+        self.succeeds("RefineMesh", *inputs, "-m", "closed.ply", "-o", "fine", "--scales", "1")
+        self.assertGreater(sum(self.marks(read(os.path.join(folder, "fine.ply")))), 10)
+        self.succeeds("TextureMesh", *inputs, "-m", "closed.ply", "-o", "painted")
+        self.assertIn(b"property uint8 unseen\n", read(os.path.join(folder, "painted.ply")))
+        said = self.succeeds("MapSurface", *inputs, "-m", "painted.ply", "-o", "map").stdout
+        self.assertIn("faces are left out: they are marked as unseen", said)
+        # Without them, the same mesh with other triangles has no marks.
+        self.succeeds("RefineMesh", *inputs, "-m", "scene_dense_mesh.ply", "-o", "fine",
+                      "--scales", "1")
+        self.assertIsNone(self.marks(read(os.path.join(folder, "fine.ply"))))
+
     def refused(self, folder, expected, *arguments):
         self.refuses(expected, "ReconstructMesh", "-i", "scene_dense.mvs", "-w", folder, *arguments)
 

@@ -126,6 +126,23 @@ TEST_F(PlyTest, WritesAndReadsBackAMesh) {
   EXPECT_EQ(again.faces, m.faces);
 }
 
+// All triangles of a marked polygon are marked, and any number but 0 is a mark.
+TEST_F(PlyTest, MarksOfUnseenFacesAreReadAndWritten) {
+  const Mesh m = mesh(
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 3\nproperty int unseen\n"
+      "property list uchar int vertex_index\nend_header\n"
+      "0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 4 0 1 2 3\n0 3 0 1 2\n1 3 2 1 0\n");
+  EXPECT_EQ(m.unseen, (std::vector<std::uint8_t>{1, 1, 0, 1}));
+  write_mesh_ply(file_, m);
+  EXPECT_EQ(read_mesh_ply(file_).unseen, m.unseen);
+  EXPECT_EQ(read_mesh_ply(file_).faces, m.faces);
+  EXPECT_TRUE(mesh(kQuad).unseen.empty());
+  Mesh wrong = m;
+  wrong.unseen.pop_back();
+  EXPECT_THAT(error_of([&] { write_mesh_ply(file_, wrong); }), HasSubstr("marks of faces"));
+}
+
 std::string replaced(std::string_view text, const std::string& from, const std::string& to) {
   std::string result(text);
   const std::size_t at = result.find(from);

@@ -377,5 +377,17 @@ TEST_F(TexturedMeshTest, TexturesAreFoundAndCountedWithoutReadingThem) {
   EXPECT_THAT(bytes, testing::Each(2 * 3 * 32 * 16 + decoding));
 }
 
+TEST_F(TexturedMeshTest, PlyKeepsTheMarksOfUnseenFaces) {
+  for (const std::size_t textures : {std::size_t{1}, std::size_t{2}}) {
+    TexturedMesh mesh = two_squares(textures);
+    mesh.mesh.unseen = {0, 1, 1, 0};
+    write_textured_mesh(path_, mesh, TexturedFormat::ply);
+    const TexturedMesh again = read_textured_ply(path_);
+    EXPECT_EQ(again.mesh.unseen, mesh.mesh.unseen);
+    EXPECT_EQ(again.texture_of, mesh.texture_of);
+    EXPECT_EQ(again.mesh.faces, mesh.mesh.faces);
+  }
+}
+
 }  // namespace
 }  // namespace axial::io

@@ -17,6 +17,12 @@ namespace {
 
 using testing::HasSubstr;
 
+double area(const Mesh& mesh, std::size_t face) {
+  const auto& [a, b, c] = mesh.faces[face];
+  const Eigen::Vector3f& at = mesh.vertices[a];
+  return 0.5 * static_cast<double>((mesh.vertices[b] - at).cross(mesh.vertices[c] - at).norm());
+}
+
 struct Errors {
   float median, of_95_percent;
 };
@@ -235,6 +241,32 @@ TEST(TextureMesh, WrongMeshesAreRefused) {
   mesh = test::room_mesh();
   for (Eigen::Vector3f& vertex : mesh.vertices) vertex.z() += 100;
   EXPECT_THAT(error(mesh), HasSubstr("no view sees a face"));
+}
+
+// Marked faces get no view, in one piece and in tiles, and stay marked when they are split.
+TEST(TextureMesh, MarkedFacesHaveTheEmptyColour) {
+  const test::Room room = test::photograph_room(6);
+  Mesh marked = test::room_mesh();
+  for (std::size_t f = 0; f < marked.faces.size(); ++f) marked.unseen.push_back(f % 3 == 0);
+  for (const std::size_t tiles : {std::size_t{1}, std::size_t{2}}) {
+    Options options;
+    options.tiles = tiles;
+    options.empty_color = {1, 250, 3};
+    double before = 0, after = 0;
+    for (std::size_t f = 0; f < marked.faces.size(); f += 3) before += area(marked, f);
+    texture_tiles(
+        marked, room.views, room.source(), options, [&](std::size_t, const TexturedMesh& result) {
+          const Mesh& mesh = result.mesh;
+          ASSERT_EQ(mesh.unseen.size(), mesh.faces.size());
+          for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+            if (!mesh.unseen[f]) continue;
+            after += area(mesh, f);
+            const Eigen::Vector2i at = result.uv[f][0].array().round().cast<int>();
+            EXPECT_EQ(result.textures[result.texture_of[f]](at.y(), at.x()), cv::Vec3b(3, 250, 1));
+          }
+        });
+    EXPECT_NEAR(after / before, 1, 1e-5) << tiles;
+  }
 }
 
 }  // namespace

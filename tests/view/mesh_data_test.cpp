@@ -94,5 +94,18 @@ TEST(MeshParts, HaveOneTextureEachAndSplitVerticesAtSeams) {
   }
 }
 
+TEST(MeshParts, MarkedFacesHaveAColourOfTheirOwn) {
+  Mesh mesh = square();
+  mesh.unseen = {0, 1, 0};
+  const std::vector<MeshPart> parts = mesh_parts(mesh, 10);
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_FALSE(parts[0].colors);
+  EXPECT_EQ(parts[0].faces, 2u);
+  ASSERT_TRUE(parts[1].colors);
+  const CornerData corners = corners_of(parts[1]);
+  EXPECT_EQ(corners.colors, std::vector<Rgb>(3, kUnseenColor));
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(corners.places[k], mesh.vertices[mesh.faces[1][k]]);
+}
+
 }  // namespace
 }  // namespace axial::view

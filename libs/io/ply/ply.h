@@ -114,16 +114,18 @@ void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
                      bool with_views = true, const PlyPlacement& placement = {});
 
 // Read a mesh. Faces with more than three corners are split into a fan of triangles. Strips in an
-// element tristrips become triangles. Positions are returned as by the function read_cloud_ply with
-// the same parameters. Error that names the file for a file without an element face or tristrips, a
-// face with fewer than three corners, or a vertex index out of range. Other errors as for
-// read_cloud_ply.
+// element tristrips become triangles. The property unseen of the faces, if there is one, becomes
+// Mesh::unseen: 0 stays 0, and other numbers become 1. Positions are returned as by the function
+// read_cloud_ply with the same parameters. Error that names the file for a file without an element
+// face or tristrips, a face with fewer than three corners, or a vertex index out of range. Other
+// errors as for read_cloud_ply.
 Mesh read_mesh_ply(const std::filesystem::path& path);
 Mesh read_mesh_ply(const std::filesystem::path& path, const LocalFrame& frame);
 
-// Writes a mesh, with its colours if it has any, and replaces an existing file. Error that names
-// the file if the number of colours is neither 0 nor the number of vertices, or if the file cannot
-// be written. Vertex indices are not checked.
+// Writes a mesh, with its colours and the property unseen of its faces (uint8) if it has them, and
+// replaces an existing file. Error that names the file if the number of colours is neither 0 nor
+// the number of vertices, if the number of marks is neither 0 nor the number of faces, or if the
+// file cannot be written. Vertex indices are not checked.
 void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
                     const PlyPlacement& placement = {});
 

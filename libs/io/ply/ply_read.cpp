@@ -25,15 +25,17 @@ void read_faces(PlyBody& body, const PlyElement& element, const std::string& fil
   if (corners_at == kNoProperty) corners_at = find_property(element, "vertex_index", true);
   if (corners_at == kNoProperty && element.count > 0)
     fail("{}: element face has no list vertex_indices", file);
+  const std::size_t unseen_at = find_property(element, "unseen", false);
   mesh.faces.reserve(element.count);
   std::vector<double> corners;
+  double unseen = 0;
   for (std::size_t i = 0; i < element.count; ++i) {
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
       if (property.is_list)
         read_list(body, property, p == corners_at ? &corners : nullptr);
-      else
-        body.scalar(property.type, property.name);
+      else if (const double value = body.scalar(property.type, property.name); p == unseen_at)
+        unseen = value;
     }
     if (corners.size() < 3)
       fail("{}: face {} has {} corners, at least 3 are needed", file, i, corners.size());
@@ -41,6 +43,7 @@ void read_faces(PlyBody& body, const PlyElement& element, const std::string& fil
       mesh.faces.push_back({as_index(corners[0], "vertex_indices", i, file),
                             as_index(corners[k - 1], "vertex_indices", i, file),
                             as_index(corners[k], "vertex_indices", i, file)});
+    if (unseen_at != kNoProperty) mesh.unseen.resize(mesh.faces.size(), unseen != 0);
   }
 }
 

@@ -18,6 +18,7 @@ constexpr const char* kWorldPosition =
     "property float64 x\nproperty float64 y\nproperty float64 z\n";
 constexpr const char* kColorProperties =
     "property uint8 red\nproperty uint8 green\nproperty uint8 blue\n";
+constexpr const char* kUnseen = "property uint8 unseen\n";
 constexpr const char* kNormal = "property float32 nx\nproperty float32 ny\nproperty float32 nz\n";
 
 void require_length(std::size_t length, std::size_t points, const char* field,
@@ -197,21 +198,24 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh, const Verte
                 const PlyPlacement& placement) {
   if (!mesh.colors.empty())
     require_length(mesh.colors.size(), mesh.vertices.size(), "colors", path.string());
+  if (!mesh.unseen.empty())
+    require_length(mesh.unseen.size(), mesh.faces.size(), "marks of faces", path.string());
   ByteWriter out;
   out.text(fmt::format("{}{}element vertex {}\n{}", kStart, geo_comment(placement),
                        mesh.vertices.size(), position_properties(placement)));
   if (!mesh.colors.empty()) out.text(kColorProperties);
   if (property) out.text(fmt::format("property float32 {}\n", property->name));
-  out.text(fmt::format("element face {}\nproperty list uint8 uint32 vertex_indices\nend_header\n",
-                       mesh.faces.size()));
+  out.text(fmt::format("element face {}\nproperty list uint8 uint32 vertex_indices\n{}end_header\n",
+                       mesh.faces.size(), mesh.unseen.empty() ? "" : kUnseen));
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     write_position(out, mesh.vertices[i], placement);
     if (!mesh.colors.empty()) out.write(std::span(mesh.colors[i]));
     if (property) out.write(property->values[i]);
   }
-  for (const auto& face : mesh.faces) {
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     out.write(std::uint8_t{3});
-    out.write(std::span(face));
+    out.write(std::span(mesh.faces[f]));
+    if (!mesh.unseen.empty()) out.write(mesh.unseen[f]);
   }
   write_atomically(path, out.bytes());
 }

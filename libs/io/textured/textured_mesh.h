@@ -38,7 +38,8 @@ std::vector<std::filesystem::path> textured_files(const std::filesystem::path& p
 // Let (x, y) be a texture coordinate of the mesh in pixels of its texture.
 //   - PLY: a comment TextureFile names each texture. The list texcoord of a face holds u and v of
 //     its corners. If there is more than one texture, texnumber is the index of the face's texture.
-//     u = (x + 0.5) / width, v = 1 - (y + 0.5) / height.
+//     u = (x + 0.5) / width, v = 1 - (y + 0.5) / height. Mesh::unseen is the property unseen of the
+//     faces; the other formats leave it out.
 //   - OBJ: u and v as in PLY. A pair (u, v) is written once for each vertex and texture that have
 //     it. Each texture that faces use has a group and a material "material_K", where K is the index
 //     of the texture.

@@ -19,16 +19,17 @@ std::string textured_ply(const TexturedMesh& textured, const std::vector<std::st
   const Mesh& mesh = textured.mesh;
   const bool numbered = textures.size() > 1;
   ByteWriter out;
-  out.reserve(1000 + 12 * mesh.vertices.size() + (numbered ? 42 : 38) * mesh.faces.size());
+  out.reserve(1000 + 12 * mesh.vertices.size() + (numbered ? 43 : 39) * mesh.faces.size());
   out.text("ply\nformat binary_little_endian 1.0\n");
   out.text(geo_comment(placement));
   for (const std::string& name : textures) out.text(fmt::format("comment TextureFile {}\n", name));
   out.text(
       fmt::format("element vertex {}\n{}element face {}\n"
                   "property list uint8 uint32 vertex_indices\n"
-                  "property list uint8 float32 texcoord\n{}end_header\n",
+                  "property list uint8 float32 texcoord\n{}{}end_header\n",
                   mesh.vertices.size(), position_properties(placement), mesh.faces.size(),
-                  numbered ? "property int32 texnumber\n" : ""));
+                  numbered ? "property int32 texnumber\n" : "",
+                  mesh.unseen.empty() ? "" : "property uint8 unseen\n"));
   for (const Eigen::Vector3f& vertex : mesh.vertices) out.write(std::span(vertex.data(), 3));
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const std::uint32_t texture = textured.texture_of[f];
@@ -41,6 +42,7 @@ std::string textured_ply(const TexturedMesh& textured, const std::vector<std::st
       out.write(1 - uv.y());
     }
     if (numbered) out.write(static_cast<std::int32_t>(texture));
+    if (!mesh.unseen.empty()) out.write(mesh.unseen[f]);
   }
   return out.take();
 }

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Finds and removes the surface that a mesh has where the cameras saw none. The cut (cut.h) closes
+// the surface behind everything that hides something; cleaning closes holes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/progress.h"
+#include "geometry/face_sights.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
+
+namespace axial::mesh {
+
+// Returns the calibrated cameras of the scene, in the order of the images.
+std::vector<geometry::PosedCamera> cameras_of(const Scene& scene);
+
+struct UnseenOptions {
+  bool keep = false;        // treat_unseen(): true: unseen faces are marked instead of removed
+  bool large_faces = true;  // unseen_faces(): large faces must be seen at a steeper angle
+  double small_holes = 5;   // of unseen_faces()
+  double cut_off = 20;      // of without_unseen()
+};
+
+// Returns Mesh::unseen of `mesh`: 1 for the faces whose place no two cameras have seen, 0 for the
+// others. A face is unseen unless two cameras see its middle from the front, at an angle whose
+// cosine is at least c (geometry::second_cosines). Let r be the longest edge of the face divided by
+// the median longest edge of all faces. c is 0.08 (r - 2.5), at least 0 and at most 0.3, or 0 if
+// `large_faces` is false, for meshes whose faces say nothing about points (decimated ones). The
+// reason for c: the surface that closes an unseen place often lies along the last rays that pass
+// it, so that cameras do see its front, but at grazing angles; and it has large faces, because
+// there are no points inside.
+//
+// Exception: unseen faces inside the seen surface count as seen if they form a set whose bounding
+// box has a diagonal of at most `small_holes` median longest edges. `progress`: numbers of cameras.
+// The result does not depend on the number of threads.
+//
+// Precondition: the mesh is manifold and oriented. Throws an Error for a mesh that
+// geometry::Occluders refuses.
+std::vector<std::uint8_t> unseen_faces(const Mesh& mesh,
+                                       std::span<const geometry::PosedCamera> cameras,
+                                       const UnseenOptions& options = {},
+                                       const ProgressSink& progress = {});
+
+// What without_unseen() removed.
+struct UnseenReport {
+  std::size_t faces = 0;   // all removed faces
+  std::size_t pieces = 0;  // number of pieces that were cut off and were too small
+};
+
+// Returns the mesh without the faces that `unseen` marks. In addition, these faces are removed:
+//   - faces that would hang on the mesh by one edge,
+//   - where the rest of the surface would touch itself at a vertex alone, all of its parts there
+//     but the largest,
+//   - pieces that are cut off and whose bounding box has a diagonal below `cut_off` mean edge
+//     lengths; the largest piece of each component stays.
+// The result is manifold and oriented like `mesh`. Its vertices have the same positions and order.
+// Precondition: `unseen` has one entry for each face.
+Mesh without_unseen(const Mesh& mesh, std::vector<std::uint8_t> unseen, double cut_off,
+                    UnseenReport* report = nullptr);
+
+// Returns `mesh` without its unseen faces (without_unseen()), or, if UnseenOptions::keep is true,
+// with marks of its unseen faces (Mesh::unseen). Logs the numbers and the shares of area. With
+// fewer than two cameras, nothing is removed or marked, and a warning is logged. Throws an Error if
+// removal would leave no face. Precondition and other Errors as for unseen_faces().
+Mesh treat_unseen(Mesh mesh, std::span<const geometry::PosedCamera> cameras,
+                  const UnseenOptions& options, const ProgressSink& progress = {});
+
+// The memory [bytes] of treat_unseen() with its result, besides `mesh`.
+std::uint64_t bytes_of_unseen(const Mesh& mesh);
+
+}  // namespace axial::mesh

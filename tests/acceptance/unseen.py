@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surface where the cameras saw nothing: the meshes of three scenes with overhangs and handles, with
+and without this surface."""
+
+import json
+import statistics
+import subprocess
+
+from meshes import judged
+from points import BASE, densified, point
+from support import runs
+from support.runs import BIN, PROGRAMS, measured
+
+SEEDS = (41, 42, 43)
+UNSEEN, LESS_RECALL = 0.02, 0.005
+
+
+def made(work, seed, medium):
+    """The folder of a scene's meshes: refined.ply, and closed-refined.ply with marks."""
+    truth = runs.simulated(f"amphora-{seed}", BASE, "--preset", "amphora", "--seed", seed)
+    folder = work / f"amphora-{seed}-{medium}-unseen"
+    refractive = ["--refractive"] if truth.housing(medium) else []
+    densified(folder, truth.data / "sparse", truth.data / medium, truth.housing(medium),
+              "--resolution-level", 0)
+    scene = folder / "scene_dense.mvs"
+    for name, more in (("", []), ("closed-", ["--close-unseen", 1])):
+        mesh, refined = folder / f"{name}mesh.ply", folder / f"{name}refined.ply"
+        if refined.exists():
+            continue
+        measured(folder / f"{name}reconstruct.log",
+                 *PROGRAMS.reconstruct_mesh(scene, mesh, *refractive), *more)
+        measured(folder / f"{name}refine.log",
+                 *PROGRAMS.refine_mesh(scene, mesh, refined, *refractive))
+    return folder, truth
+
+
+def against_itself(mesh, truth, medium):
+    """The shares of the mesh that no camera and one camera sees past the mesh itself."""
+    housing = truth.housing(medium)
+    command = [BIN / "unseen_check", mesh, truth.data / "sparse", *([housing] if housing else [])]
+    text = subprocess.run([str(c) for c in command], check=True, capture_output=True, text=True)
+    return json.loads(text.stdout)
+
+
+def result(work, seed, medium):
+    folder, truth = made(work, seed, medium)
+    found = {}
+    for name in ("refined", "closed-refined"):
+        report = judged(folder, name, truth, medium)
+        score = report["seen"]["scores"][0]
+        found[name] = {"no_view": report["unseen"]["no_view"], "recall": score["recall"],
+                       "few": report["unseen"]["few_views"], "f": score["f_score"],
+                       "hidden": against_itself(folder / f"{name}.ply", truth, medium)["no_view"]}
+    return found
+
+
+@point("surface of the preset amphora where no camera sees the truth, and surface that no camera "
+       f"sees past the mesh: at most {UNSEEN:.0%} each of the refined mesh, medians of three seeds; "
+       f"recall of places that two views see at most {100 * LESS_RECALL} points below that with "
+       "--close-unseen, F no lower")
+def unseen_surface(work):
+    seen, good = [], True
+    for medium in ("air", "water"):
+        results = [result(work, seed, medium) for seed in SEEDS]
+        value = {(name, key): statistics.median(r[name][key] for r in results)
+                 for name in results[0] for key in results[0][name]}
+        lost = statistics.median(r["closed-refined"]["recall"] - r["refined"]["recall"]
+                                 for r in results)
+        texts = [f"{name}: no view {value[name, 'no_view']:.2%}, one view {value[name, 'few']:.2%}, "
+                 f"hidden {value[name, 'hidden']:.2%}, recall {value[name, 'recall']:.4f}, "
+                 f"F {value[name, 'f']:.4f}" for name in ("closed-refined", "refined")]
+        seen.append(f"{medium}: {'; '.join(texts)}; recall lost {lost:.4f}")
+        good &= (value["refined", "no_view"] <= UNSEEN and value["refined", "hidden"] <= UNSEEN
+                 and lost <= LESS_RECALL
+                 and value["refined", "f"] >= value["closed-refined", "f"])
+    return "; ".join(seen), good

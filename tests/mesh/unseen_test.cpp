@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh/unseen.h"
+
+#include <gmock/gmock.h>
+
+#include <numbers>
+#include <random>
+
+#include "base/parallel.h"
+#include "support/error_of.h"
+#include "topology.h"
+
+namespace axial::mesh {
+namespace {
+
+using test::error_of;
+
+// A grid of size x size squares of side 0.01 around (x, 0, z), halved into triangles. The front is
+// turned upwards, to -z, where the cameras are.
+Mesh plate(std::uint32_t size, float x, float z) {
+  Mesh mesh;
+  const float half = 0.005f * static_cast<float>(size);
+  for (std::uint32_t j = 0; j <= size; ++j)
+    for (std::uint32_t i = 0; i <= size; ++i)
+      mesh.vertices.emplace_back(x - half + 0.01f * static_cast<float>(i),
+                                 -half + 0.01f * static_cast<float>(j), z);
+  for (std::uint32_t j = 0; j < size; ++j)
+    for (std::uint32_t i = 0; i < size; ++i) {
+      const std::uint32_t a = j * (size + 1) + i, b = a + 1, c = a + size + 1, d = c + 1;
+      mesh.faces.push_back({a, d, b});
+      mesh.faces.push_back({a, c, d});
+    }
+  return mesh;
+}
+
+void append(Mesh& mesh, const Mesh& other) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const auto& face : other.faces)
+    mesh.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+}
+
+// Cameras at z = 0 that look along z, in air or behind a flat port.
+std::vector<geometry::PosedCamera> cameras_at(const std::vector<double>& places, bool wet) {
+  std::vector<geometry::PosedCamera> cameras;
+  for (const double x : places) {
+    geometry::PosedCamera posed;
+    posed.camera.width = 300;
+    posed.camera.height = 300;
+    posed.camera.lens = {150, 150, 149.5, 149.5};
+    if (wet) posed.camera.port = refractive::FlatPort<double>{{0, 0, 1}, 0.03, 0.01, 1, 1.5, 1.34};
+    posed.pose.centre.x() = x;
+    cameras.push_back(posed);
+  }
+  return cameras;
+}
+
+UnseenOptions holes(double small) {
+  UnseenOptions options;
+  options.small_holes = small;
+  return options;
+}
+
+std::size_t count(const std::vector<std::uint8_t>& marks) {
+  return static_cast<std::size_t>(std::ranges::count(marks, std::uint8_t{1}));
+}
+
+class Unseen : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Media, Unseen, testing::Bool());
+
+// A plate of 0.2 at half of the distance hides the middle of the plate below from every camera near
+// the axis: a square of about 0.4, less what the cameras' own distances uncover.
+TEST_P(Unseen, SurfaceBehindAnotherIsFoundAndRemoved) {
+  Mesh mesh = plate(80, 0, 1);
+  const std::size_t below = mesh.faces.size();
+  append(mesh, plate(20, 0, 0.5f));
+  const auto cameras = cameras_at({-0.02, 0, 0.02}, GetParam());
+  const std::vector<std::uint8_t> unseen = unseen_faces(mesh, cameras, holes(0));
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+    for (const std::uint32_t v : mesh.faces[f]) middle += mesh.vertices[v] / 3;
+    if (f >= below) {
+      EXPECT_EQ(unseen[f], 0) << "nothing is above the upper plate";
+      continue;
+    }
+    const float aside = std::max(std::abs(middle.x()), std::abs(middle.y()));
+    EXPECT_TRUE(unseen[f] == 1 || aside > 0.14f) << middle.transpose();
+    EXPECT_TRUE(unseen[f] == 0 || aside < 0.26f) << middle.transpose();
+  }
+  UnseenReport report;
+  const Mesh rest = without_unseen(mesh, unseen, 0, &report);
+  EXPECT_GE(report.faces, count(unseen));
+  EXPECT_LE(report.faces, count(unseen) + count(unseen) / 20) << "few faces at the border follow";
+  EXPECT_EQ(rest.faces.size(), mesh.faces.size() - report.faces);
+  const test::MeshFacts facts = test::facts_of(rest);
+  EXPECT_EQ(facts.bad_edges + facts.bad_vertices + facts.unused_vertices, 0u);
+}
+
+// One camera sees below the roof; two cameras are needed.
+TEST_P(Unseen, OneCameraIsNotEnough) {
+  Mesh mesh = plate(30, 0, 1);
+  append(mesh, plate(40, 0, 0.5f));
+  const std::size_t floor = 30 * 30 * 2;
+  const auto seen_by = [&](const std::vector<double>& places) {
+    const auto unseen = unseen_faces(mesh, cameras_at(places, GetParam()), holes(0));
+    return floor - count({unseen.begin(), unseen.begin() + floor});
+  };
+  EXPECT_EQ(seen_by({0, 0.01}), 0u);
+  EXPECT_EQ(seen_by({0, 0.01, 0.65}), 0u);
+  EXPECT_GT(seen_by({0, 0.01, 0.65, 0.66}), floor / 4);
+}
+
+TEST(Unseen, BacksAreUnseen) {
+  Mesh mesh = plate(20, 0, 1);
+  for (auto& face : mesh.faces) std::swap(face[1], face[2]);
+  const auto cameras = cameras_at({0, 0.1}, false);
+  EXPECT_EQ(count(unseen_faces(mesh, cameras, holes(0))), mesh.faces.size());
+  EXPECT_THAT(error_of([&] { treat_unseen(mesh, cameras, {}); }),
+              testing::HasSubstr("no two cameras see the front of a face"));
+}
+
+TEST(Unseen, SmallHolesAreNotMade) {
+  Mesh mesh = plate(60, 0, 1);
+  const std::size_t below = mesh.faces.size();
+  append(mesh, plate(2, 0, 0.5f));
+  const auto cameras = cameras_at({0, 0.001}, false);
+  const std::vector<std::uint8_t> all = unseen_faces(mesh, cameras, holes(0));
+  ASSERT_GT(count(all), 4u);
+  EXPECT_EQ(count({all.begin() + static_cast<std::ptrdiff_t>(below), all.end()}), 0u);
+  // The shadow is about 0.04 wide. The longest edges are 0.014 long.
+  EXPECT_EQ(count(unseen_faces(mesh, cameras, holes(2))), count(all));
+  EXPECT_EQ(count(unseen_faces(mesh, cameras, holes(8))), 0u);
+}
+
+// The surface that closes an unseen place often lies along the last rays, and has large faces.
+TEST(Unseen, LargeFacesMustBeSeenAtASteeperAngle) {
+  for (const bool large : {false, true}) {
+    Mesh mesh = plate(60, 0, 1);
+    const std::size_t level = mesh.faces.size();
+    // A wall behind the plate whose front is turned to the cameras, 80 degrees from facing them.
+    Mesh wall = plate(large ? 2 : 20, 0, 0);
+    for (Eigen::Vector3f& v : wall.vertices) {
+      const float along = v.y() * (large ? 10.0f : 1.0f);
+      v = {0.8f + v.x() * (large ? 10.0f : 1.0f) * 0.17f, along,
+           1 - v.x() * (large ? 10.0f : 1.0f) * 0.98f};
+    }
+    append(mesh, wall);
+    std::vector<geometry::PosedCamera> cameras = cameras_at({0.7, 0.72}, false);
+    const auto unseen = unseen_faces(mesh, cameras, holes(0));
+    const std::size_t marked =
+        count({unseen.begin() + static_cast<std::ptrdiff_t>(level), unseen.end()});
+    if (large)
+      EXPECT_EQ(marked, wall.faces.size());
+    else
+      EXPECT_EQ(marked, 0u);
+    UnseenOptions decimated = holes(0);
+    decimated.large_faces = false;
+    EXPECT_EQ(count(unseen_faces(wall, cameras, decimated)), 0u);
+  }
+}
+
+TEST(Unseen, PiecesThatAreCutOffAreRemoved) {
+  Mesh mesh = plate(60, 0, 1);
+  std::vector<std::uint8_t> unseen(mesh.faces.size(), 0);
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    float x = 0;
+    for (const std::uint32_t v : mesh.faces[f]) x += mesh.vertices[v].x() / 3;
+    unseen[f] = x > 0.2f && x < 0.25f;
+  }
+  UnseenReport report;
+  // The strip of 0.05 x 0.6 beside the gap has a diagonal of 53 mean edges of 0.0114.
+  // A corner of a part may hang on it by one edge.
+  const auto left = [&](double cut_off) {
+    return static_cast<double>(without_unseen(mesh, unseen, cut_off, &report).faces.size());
+  };
+  EXPECT_NEAR(left(20), 60 * 55 * 2, 4);
+  EXPECT_EQ(report.pieces, 0u);
+  EXPECT_NEAR(left(60), 60 * 50 * 2, 4);
+  EXPECT_EQ(report.pieces, 1u);
+}
+
+TEST(Unseen, AnyMarksLeaveAManifoldMesh) {
+  std::mt19937 random(5);
+  for (int trial = 0; trial < 40; ++trial) {
+    const Mesh mesh = plate(12, 0, 1);
+    std::vector<std::uint8_t> unseen(mesh.faces.size());
+    std::bernoulli_distribution marked(0.02 * trial);
+    for (std::uint8_t& mark : unseen) mark = marked(random);
+    const test::MeshFacts facts = test::facts_of(without_unseen(mesh, unseen, 0));
+    EXPECT_EQ(facts.bad_edges + facts.bad_vertices + facts.unused_vertices, 0u) << trial;
+  }
+}
+
+TEST(Unseen, MarksAreKeptInsteadIfWanted) {
+  Mesh mesh = plate(40, 0, 1);
+  append(mesh, plate(10, 0, 0.5f));
+  const auto cameras = cameras_at({0, 0.01}, false);
+  const Mesh kept = treat_unseen(mesh, cameras, {.keep = true, .small_holes = 0});
+  EXPECT_EQ(kept.faces, mesh.faces);
+  EXPECT_EQ(kept.unseen, unseen_faces(mesh, cameras, holes(0)));
+  const Mesh removed = treat_unseen(mesh, cameras, {.small_holes = 0});
+  EXPECT_TRUE(removed.unseen.empty());
+  EXPECT_LT(removed.faces.size(), mesh.faces.size());
+  // One camera cannot tell.
+  const Mesh untold = treat_unseen(kept, std::span(cameras).first(1), {});
+  EXPECT_EQ(untold.faces, mesh.faces);
+  EXPECT_TRUE(untold.unseen.empty());
+}
+
+TEST(Unseen, DoesNotDependOnThreads) {
+  Mesh mesh = plate(60, 0, 1);
+  append(mesh, plate(20, 0, 0.5f));
+  const auto cameras = cameras_at({-0.1, 0, 0.1}, true);
+  std::vector<std::uint8_t> alone;
+  {
+    const ThreadLimit one(1);
+    alone = unseen_faces(mesh, cameras, holes(5));
+  }
+  const ThreadLimit four(4);
+  EXPECT_EQ(unseen_faces(mesh, cameras, holes(5)), alone);
+}
+
+}  // namespace
+}  // namespace axial::mesh
