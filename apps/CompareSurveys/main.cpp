@@ -12,8 +12,11 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/same_file.h"
+#include "belong/surface_check.h"
 #include "compare/write_changes.h"
 #include "geometry/seen_part.h"
+#include "io/cameras/geo_offset.h"
+#include "io/openmvs/mesh_of_scene.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
@@ -43,9 +46,28 @@ compare::ChangeFiles change_files(const Settings& settings) {
           named(".change.sigma.tif"), named(".change.json"), named(".change.jpg")};
 }
 
-Mesh read_survey(const Settings& settings, const fs::path& path, const LocalFrame& frame) {
+// The offset of the scene if the mesh has lost it (io::is_without_offset()); otherwise the world.
+LocalFrame lost_offset(const fs::path& mesh, const fs::path& scene) {
+  if (scene.empty()) return {};
+  const LocalFrame frame = io::read_geo_offset_beside(scene).value_or(LocalFrame{});
+  return io::is_without_offset(frame, mesh) ? frame : LocalFrame{};
+}
+
+// The shape of a survey in `frame`. `scene`: of the survey; empty: not known.
+Mesh read_shape(const fs::path& path, const fs::path& scene, const LocalFrame& frame) {
+  const LocalFrame lost = lost_offset(path, scene);
+  if (lost.is_world()) return io::read_shape(path, frame);
+  io::tell_lost_offset(path, lost);
+  Mesh mesh = io::read_shape(path);
+  for (Eigen::Vector3f& vertex : mesh.vertices)
+    vertex = frame.to_local(lost.to_world(vertex.cast<double>())).cast<float>();
+  return mesh;
+}
+
+Mesh read_survey(const Settings& settings, const fs::path& path, const fs::path& scene,
+                 const LocalFrame& frame) {
   memory_of(settings).require(io::bytes_to_read_mesh(path), "reading " + path.string());
-  Mesh mesh = io::read_shape(path, frame);
+  Mesh mesh = read_shape(path, scene, frame);
   mesh.colors = {};
   naming(path, [&] { check_mesh(mesh); });
   remove_marked_faces(mesh);
@@ -55,9 +77,15 @@ Mesh read_survey(const Settings& settings, const fs::path& path, const LocalFram
   return mesh;
 }
 
+// A mesh and its file.
+struct MeshFile {
+  const Mesh& mesh;
+  const fs::path& path;
+};
+
 // The photographs of a survey, in the frame of the meshes. None without a scene.
 std::vector<map::Photo> read_photos(const Settings& settings, const fs::path& path,
-                                    const LocalFrame& frame) {
+                                    const LocalFrame& frame, const MeshFile& survey) {
   std::vector<map::Photo> photos;
   if (path.empty()) return photos;
   if (const auto counts = io::count_mvs(path))
@@ -65,19 +93,18 @@ std::vector<map::Photo> read_photos(const Settings& settings, const fs::path& pa
   io::SceneFiles files;
   files.scene = path;
   files.working_folder = settings.working_folder;
-  const io::SceneWithCameras scene = io::read_scene_with_cameras(files);
-  const Eigen::Vector3d shift = scene.frame.origin - frame.origin;
-  for (const SceneImage& image : scene.scene.images) {
-    if (!image.calibrated) continue;
-    photos.push_back({image.camera, image.pose});
-    photos.back().pose.centre += shift;
-  }
+  io::SceneWithCameras scene = io::read_scene_with_cameras(files);
+  enter(LocalFrame{frame.origin - scene.frame.origin}, scene.scene);
+  for (const SceneImage& image : scene.scene.images)
+    if (image.calibrated) photos.push_back({image.camera, image.pose});
   if (photos.empty()) fail("{}: has no calibrated image", path.string());
+  belong::check_surface(scene.scene, belong::shape_of(survey.mesh), {survey.path, path});
   return photos;
 }
 
 // A frame near the mesh of the earlier survey.
-LocalFrame frame_of_survey(const Settings& settings, const fs::path& path) {
+LocalFrame frame_of_survey(const Settings& settings, const fs::path& path, const fs::path& scene) {
+  if (const LocalFrame lost = lost_offset(path, scene); !lost.is_world()) return lost;
   memory_of(settings).require(io::bytes_to_read_mesh(path), "reading " + path.string());
   return frame_near(io::mesh_place(path).first_vertex);
 }
@@ -196,7 +223,18 @@ void warn_of_large_changes(const compare::Comparison& comparison) {
         noise.typical * 1e3, noise.typical / noise.local);
 }
 
+void report_place(const compare::PlaceAgreement& place) {
+  if (place.verdict == compare::PlaceVerdict::unknown)
+    return log_info(
+        "the surveys have too little relief in common to tell whether they show the same place");
+  log_info("correlation of the reliefs of both surveys: {:.2f}; by chance: {:.2f}",
+           place.correlation, place.chance);
+  if (place.verdict == compare::PlaceVerdict::different)
+    log_warning("--allow-other-place: the surveys show different places");
+}
+
 void report(const compare::Comparison& comparison) {
+  report_place(comparison.place);
   const compare::Changes& changes = comparison.changes;
   log_info("map of {} x {} pixels of {:.4g} m, {:.4g} m^2 compared", comparison.grid.columns,
            comparison.grid.rows, comparison.grid.pixel, changes.area_compared);
@@ -228,12 +266,14 @@ int run(int argc, char** argv) {
   compare::ChangeFacts facts{settings.before.filename().string(),
                              settings.after.filename().string()};
   if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg, option_of);
-  const LocalFrame frame = frame_of_survey(settings, settings.before);
+  const LocalFrame frame = frame_of_survey(settings, settings.before, settings.scene_before);
   facts.mesh_frame = frame;
-  Mesh before = read_survey(settings, settings.before, frame);
-  Mesh after = read_survey(settings, settings.after, frame);
-  settings.compare.photos.before = read_photos(settings, settings.scene_before, frame);
-  settings.compare.photos.after = read_photos(settings, settings.scene_after, frame);
+  Mesh before = read_survey(settings, settings.before, settings.scene_before, frame);
+  Mesh after = read_survey(settings, settings.after, settings.scene_after, frame);
+  settings.compare.photos.before =
+      read_photos(settings, settings.scene_before, frame, {before, settings.before});
+  settings.compare.photos.after =
+      read_photos(settings, settings.scene_after, frame, {after, settings.after});
   return_freed_memory();
   facts.aligned = settings.compare.align;
   settings.compare.memory = memory_of(settings);

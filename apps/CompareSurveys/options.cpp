@@ -17,7 +17,8 @@ struct Raw {
   double sigma_before = 0, sigma_after = 0;
 };
 
-constexpr SettingName kOptions[] = {{"ground_sample_distance", "--ground-sample-distance"},
+constexpr SettingName kOptions[] = {{"allow_other_place", "--allow-other-place"},
+                                    {"ground_sample_distance", "--ground-sample-distance"},
                                     {"min_views", "--min-views"},
                                     {"epsg", "--epsg"},
                                     {"up", "--up"}};
@@ -64,7 +65,9 @@ void declare_comparison(OptionList& list, Raw& raw, Settings& settings) {
                         "change; more if pixels are narrower than the distance of the vertices")
       .add_with_default("min-views", &settings.compare.photos.least,
                         "smallest number of photographs that see a place, with --scene or "
-                        "--other-scene");
+                        "--other-scene")
+      .add_switch("allow-other-place", &settings.compare.allow_other_place,
+                  "compare surveys whose reliefs show different places");
 }
 
 template <class T>

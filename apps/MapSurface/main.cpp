@@ -14,7 +14,9 @@
 #include "base/naming.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
+#include "belong/surface_check.h"
 #include "geometry/seen_part.h"
+#include "io/openmvs/mesh_of_scene.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
@@ -77,7 +79,7 @@ TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame) {
   TexturedMesh mesh;
   if (io::is_textured_mesh(settings.mesh)) {
     memory_of(settings).require(bytes + io::bytes_to_read_textures(settings.mesh), work);
-    mesh = io::read_textured_mesh(settings.mesh, frame);
+    mesh = io::read_textured_mesh_of_scene(frame, settings.mesh);
   } else {
     mesh.mesh = io::read_mesh_of_scene(frame, settings.mesh);
   }
@@ -182,6 +184,16 @@ double pixel_of(const Settings& settings, const Mesh& mesh,
   if (settings.pixel > 0) return settings.pixel;
   memory_of(settings).require(map::bytes_of_pixel_width(mesh), "the width of a pixel");
   return map::rounded_width(map::median_pixel_width(mesh, photos_of(views)));
+}
+
+// Warns if the code names a reference system, although the scene lies near the origin of its
+// coordinates, as local coordinates do.
+void warn_of_local_coordinates(const Settings& settings, const LocalFrame& frame) {
+  if (settings.epsg > 0 && frame.is_world())
+    log_warning(
+        "--epsg {}: the coordinates of {} are within 1 km of the origin: are they local "
+        "coordinates? The maps state the system all the same",
+        settings.epsg, settings.scene.scene.string());
 }
 
 // Heights are along z if the coordinates of the scene are those of a reference system: if the scene
@@ -321,13 +333,15 @@ int run(int argc, char** argv) {
                                 "reading " + settings.scene.scene.string());
   io::SceneWithCameras scene = io::read_scene_with_cameras(settings.scene);
   TexturedMesh mesh = read_mesh(settings, scene.frame);
+  warn_of_local_coordinates(settings, scene.frame);
+  belong::check_surface(scene.scene, belong::shape_of(mesh.mesh),
+                        {settings.mesh, settings.scene.scene});
   const texture::Photographs photographs(scene.scene, settings.scene.scene, settings.photographs);
   const LocalFrame frame = scene.frame;
   scene = {};
   return_freed_memory();
   const auto& views = photographs.views();
   naming(settings.mesh, [&] {
-    check_mesh(mesh.mesh);
     const Eigen::Vector3d facing = keep_seen_part(settings, views, mesh);
     const PlacedMap place = place_map(settings, mesh.mesh, frame, views, facing);
     keep_inputs(settings, photographs);
@@ -340,6 +354,7 @@ int run(int argc, char** argv) {
     else
       facts = look_at_faces(mesh.mesh, settings, photographs, errors);
     return_freed_memory();
+    already_named([&] { photographs.check(); });
     write(settings, mesh, facts, place, crs);
   });
   return 0;

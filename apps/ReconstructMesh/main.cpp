@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/same_file.h"
+#include "belong/surface_check.h"
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
@@ -52,6 +53,8 @@ Mesh reconstruct(const io::SceneWithCameras& scene, const Options& options) {
       file.empty() ? cloud_of(scene.scene) : io::read_cloud_of_scene(scene.frame, file);
   const fs::path& source = file.empty() ? options.scene.scene : file;
   log_info("Cloud {}: {} points", source.filename().string(), cloud.size());
+  if (!file.empty())
+    belong::check_surface(scene.scene, belong::shape_of(cloud), {file, options.scene.scene});
   return naming(source, [&] {
     return mesh::reconstruct(std::move(cloud), scene.scene, options.reconstruct);
   });

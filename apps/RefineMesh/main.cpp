@@ -11,6 +11,8 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/same_file.h"
+#include "belong/photograph_check.h"
+#include "belong/surface_check.h"
 #include "densify/fingerprint.h"
 #include "densify/image_store.h"
 #include "densify/memory_limit.h"
@@ -22,6 +24,7 @@
 #include "mesh/unseen.h"
 #include "options.h"
 #include "refine/state_file.h"
+#include "scene/check_mesh.h"
 
 namespace axial::apps {
 namespace {
@@ -54,6 +57,7 @@ Mesh read_mesh(const Options& options, const LocalFrame& frame, bool& has_marks)
   memory_of(options).require(io::bytes_to_read_mesh(options.mesh),
                              "reading " + options.mesh.string());
   Mesh mesh = io::read_mesh_of_scene(frame, options.mesh);
+  naming(options.mesh, [&] { check_mesh(mesh); });
   if (mesh.faces.empty()) fail("{}: the mesh has no faces", options.mesh.string());
   log_info("Mesh {}: {} vertices, {} faces", options.mesh.filename().string(), mesh.vertices.size(),
            mesh.faces.size());
@@ -160,6 +164,7 @@ Mesh refine_mesh(Mesh mesh, const densify::Project& project, const Options& opti
   const Shares shares = share_out_memory(options, project);
   densify::ImageStore images(project, options.scene, shares.images);
   images.check_all(1);
+  belong::PhotographCheck photographs(project.scene, options.scene.input);
   refine::Options settings = options.refine;
   settings.max_bytes = shares.for_refinement;
   settings.bytes_afterwards = mesh::bytes_to_clean(1);
@@ -168,11 +173,13 @@ Mesh refine_mesh(Mesh mesh, const densify::Project& project, const Options& opti
         state, views_of(project),
         [&](std::size_t view) {
           const auto image = images.get(view);
+          photographs.take(view, image->grey);
           return refine::Picture{image->grey, image->mask};
         },
         settings, console_progress("Refined"),
         [&](const refine::State& now) { of_run.write(now, fingerprint); });
   });
+  photographs.report();
   const refine::Report& report = state.report;
   log_info("{} vertices measured in {} pairs of images; median displacement {:.3g} m",
            report.measured, report.pairs, report.moved);
@@ -208,6 +215,7 @@ int run(int argc, char** argv) {
   check_outputs(options, project);
   bool has_marks = false;
   Mesh mesh = read_mesh(options, project.frame, has_marks);
+  belong::check_surface(project.scene, belong::shape_of(mesh), {options.mesh, options.scene.input});
   StateOfRun state(state_file(options));
   mesh = refine_mesh(std::move(mesh), project, options, state);
   return_freed_memory();

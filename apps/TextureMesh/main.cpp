@@ -12,12 +12,14 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/same_file.h"
+#include "belong/surface_check.h"
 #include "geometry/seen_part.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
 #include "mesh/clean.h"
 #include "other_tiles.h"
+#include "scene/check_mesh.h"
 #include "settings.h"
 
 namespace axial::apps {
@@ -151,6 +153,7 @@ void texture_and_write(const Settings& settings, const Paths& inputs, Mesh mesh,
         options,
         [&](std::size_t tile, const TexturedMesh& textured) {
           return_freed_memory();
+          if (tile == 0) already_named([&] { photographs.check(); });
           keep_inputs(settings, inputs, tile, textured.textures.size());
           written.textures += textured.textures.size();
           written.faces += textured.mesh.faces.size();
@@ -187,7 +190,10 @@ int run(int argc, char** argv) {
     memory_of(settings).require(counts->reading_bytes(),
                                 "reading " + settings.scene.scene.string());
   io::SceneWithCameras scene = io::read_scene_with_cameras(settings.scene);
-  Mesh mesh = simplified(settings, read_mesh(settings, scene.frame));
+  Mesh mesh = read_mesh(settings, scene.frame);
+  naming(settings.mesh, [&] { check_mesh(mesh); });
+  belong::check_surface(scene.scene, belong::shape_of(mesh), {settings.mesh, settings.scene.scene});
+  mesh = simplified(settings, std::move(mesh));
   const texture::Photographs photographs(scene.scene, settings.scene.scene, settings.photographs);
   const Paths inputs = inputs_of(settings, scene.scene, photographs);
   check_outputs(settings, inputs);

@@ -17,6 +17,7 @@
 #include "base/output_name.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
+#include "belong/surface_check.h"
 #include "converted_mesh.h"
 #include "evaluate/alignment.h"
 #include "find_move.h"
@@ -24,6 +25,7 @@
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/moved_housing.h"
 #include "io/openmvs/mvs.h"
+#include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
 #include "io/ply/ply_transform.h"
 #include "io/textured/textured_mesh.h"
@@ -136,6 +138,26 @@ void keep_images(const Options& options, const Files& files, const Scene& scene)
     require_not_an_input(output.path, inputs, output.setting);
 }
 
+// Warns of a mesh or a cloud that does not belong to the scene, which is still unmoved. The
+// vertices of a mesh are looked at as points. transform_ply() reports the faults of files.
+void warn_of_foreign_points(const Options& options, const io::SceneWithCameras& scene,
+                            const fs::path& ply) {
+  constexpr std::size_t kPortion = 1 << 18, kMost = 1'000'000;
+  std::vector<Eigen::Vector3f> points;
+  std::size_t read = 0;
+  try {
+    io::read_cloud_of_scene_in_portions(scene.frame, ply, kPortion,
+                                        [&](const PointCloud& portion, std::size_t all) {
+                                          const std::size_t step = all / kMost + 1;
+                                          for (const Eigen::Vector3f& position : portion.positions)
+                                            if (read++ % step == 0) points.push_back(position);
+                                        });
+  } catch (const Error&) {
+    return;
+  }
+  belong::check_surface(scene.scene, {points}, {ply, options.files.scene, true});
+}
+
 void apply(const Options& options, const FrameMove& move, io::SceneWithCameras& scene) {
   axial::apply(move.similarity, scene.scene);
   scene.frame = move.to;
@@ -245,6 +267,7 @@ int run(int argc, char** argv) {
   check_outputs(options, files);
   io::SceneWithCameras scene = io::read_scene_with_cameras(options.files);
   keep_images(options, files, scene.scene);
+  for (const MovedPly& ply : files.plys) warn_of_foreign_points(options, scene, ply.input);
   const FrameMove move = find_move(options, scene);
   check_scale(options, scene, move.similarity);
   apply(options, move, scene);

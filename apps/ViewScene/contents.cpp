@@ -14,16 +14,21 @@
 #include "base/naming.h"
 #include "base/parallel.h"
 #include "base/version.h"
+#include "belong/photograph_check.h"
+#include "belong/surface_check.h"
 #include "depth_maps.h"
 #include "folder.h"
 #include "geometry/seen_part.h"
 #include "io/images/bit_depth.h"
 #include "io/images/image.h"
+#include "io/images/photograph_size.h"
+#include "io/openmvs/mesh_of_scene.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
 #include "maps.h"
 #include "residuals.h"
 #include "run.h"
+#include "scene/check_mesh.h"
 #include "scene/resolution.h"
 #include "truth.h"
 #include "view/camera_data.h"
@@ -61,6 +66,8 @@ void read_cloud(const Options& options, Contents& contents) {
   if (contents.cloud.size() == 0) fail("{}: the cloud has no points", options.cloud.string());
   log_info("{}: {} of {} points are shown", options.cloud.string(), contents.cloud.size(),
            contents.all_points);
+  belong::check_surface(contents.scene.scene, belong::shape_of(contents.cloud),
+                        {options.cloud, options.scene.scene});
 }
 
 // The corners of the mesh, for a first view without a cloud.
@@ -76,7 +83,7 @@ void read_mesh(const Options& options, Contents& contents) {
   const LocalFrame& frame = contents.scene.frame;
   std::size_t faces = 0;
   if (io::is_textured_mesh(options.mesh)) {
-    contents.textured = io::read_textured_mesh(options.mesh, frame);
+    contents.textured = io::read_textured_mesh_of_scene(frame, options.mesh);
     faces = contents.textured->mesh.faces.size();
   } else {
     contents.mesh = io::read_mesh_of_scene(frame, options.mesh);
@@ -84,6 +91,10 @@ void read_mesh(const Options& options, Contents& contents) {
   }
   if (faces == 0) fail("{}: the mesh has no faces", options.mesh.string());
   log_info("{}: {} faces", options.mesh.string(), faces);
+  const Mesh& mesh = contents.mesh ? *contents.mesh : contents.textured->mesh;
+  naming(options.mesh, [&] { check_mesh(mesh); });
+  belong::check_surface(contents.scene.scene, belong::shape_of(mesh),
+                        {options.mesh, options.scene.scene});
 }
 
 // Warns if the mesh is inside out.
@@ -172,41 +183,48 @@ Json write_mesh(const Contents& contents, const Options& options, const fs::path
   return mesh;
 }
 
-// Writes the photograph of `image` to `file`. Returns the size of the reduced photograph.
-cv::Size write_photograph(const SceneImage& image, int bits, int longest, const fs::path& file) {
+// Writes the photograph of the image `index` to `file`, and gives it to `check`. Returns the size
+// of the reduced photograph.
+cv::Size write_photograph(const Scene& scene, std::size_t index, int bits, int longest,
+                          const fs::path& file, belong::PhotographCheck& check) {
+  const SceneImage& image = scene.images[index];
   const cv::Mat3b pixels = io::in_8_bits(io::read_photograph(image.path).pixels, bits);
-  if (!same_shape(pixels.size(), {image.camera.width, image.camera.height}))
-    fail("{}: is {}x{}, but its camera is {}x{}", image.path, pixels.cols, pixels.rows,
-         image.camera.width, image.camera.height);
+  check.take(index, pixels);
   const cv::Size size = reduced(pixels.size(), longest);
   io::write_jpeg(file, resized_image(pixels, size), kQuality);
   return size;
 }
 
 Json write_cameras(const Contents& contents, const Options& options, const fs::path& staging) {
-  std::vector<const SceneImage*> images;
+  const Scene& scene = contents.scene.scene;
+  std::vector<std::size_t> images;
   std::vector<fs::path> files;
   std::vector<io::ImageHeader> headers;
+  std::vector<io::PhotographSize> sizes;
   const auto checks = points_to_check(contents);
   Json cameras = Json::array();
-  for (const SceneImage& image : contents.scene.scene.images) {
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    const SceneImage& image = scene.images[i];
     if (!image.calibrated) continue;
-    images.push_back(&image);
+    images.push_back(i);
     files.emplace_back(image.path);
     headers.push_back(io::read_image_header(image.path));
-    const auto index = static_cast<std::size_t>(&image - contents.scene.scene.images.data());
-    cameras.push_back(view::camera_data(image, checks[index]));
+    sizes.push_back({image.path, headers.back().size, {image.camera.width, image.camera.height}});
+    cameras.push_back(view::camera_data(image, checks[i]));
   }
+  io::check_photograph_sizes(sizes);
+  belong::PhotographCheck photographs(scene, options.scene.scene);
   const int bits = io::common_bit_depth(files, headers, options.bit_depth, "--bit-depth");
   for_each_in_flight(images.size(), thread_count(), [&](std::size_t i) {
     const std::string name = fmt::format("photographs/{:05}.jpg", i);
-    const cv::Size size =
-        write_photograph(*images[i], bits, options.photograph_size, staging / name);
+    const cv::Size size = write_photograph(scene, images[i], bits, options.photograph_size,
+                                           staging / name, photographs);
     Json& camera = cameras[i];
     camera["name"] = files[i].filename().string();
     camera["photo"] = name;
     camera["photo_size"] = {size.width, size.height};
   });
+  photographs.report();
   return cameras;
 }
 

@@ -168,6 +168,23 @@ void require_seen_places(const cv::Mat1f& difference, const cv::Mat1b& unseen,
       options.name_of("min_views"), options.photos.least);
 }
 
+// Whether the heights show the same place, where photographs see it.
+PlaceAgreement place_of(const cv::Mat1f& before, const cv::Mat1f& after, const cv::Mat1b& unseen) {
+  if (unseen.empty()) return agreement_of_places(before, after);
+  cv::Mat1f seen = after.clone();
+  seen.setTo(std::numeric_limits<float>::quiet_NaN(), unseen);
+  return agreement_of_places(before, seen);
+}
+
+void require_same_place(const PlaceAgreement& place, const CompareOptions& options) {
+  if (place.verdict == PlaceVerdict::different && !options.allow_other_place)
+    fail(
+        "{}: does not show the place of {}: the correlation of their reliefs is {:.2f} (by chance "
+        "{:.2f}), and that of one place {:.2f} or more; {} compares them all the same",
+        options.name_after.string(), options.name_before.string(), place.correlation, place.chance,
+        place.least, options.name_of("allow_other_place"));
+}
+
 // Estimates the noise, or takes the given one.
 Noise noise_of(const cv::Mat1f& difference, const cv::Mat1b& unseen, const cv::Mat1f& steepness,
                const CompareOptions& options, double pixel) {
@@ -286,10 +303,12 @@ Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::Map
   fill_heights(before, after, after_frame, sink_of(options, "Heights"), result);
   const cv::Mat1b unseen =
       find_unseen(before, after, after_frame, options.photos, sink_of(options, "Sights"), result);
+  result.place = place_of(result.before, result.difference, unseen);
   Maps maps = subtract(result);
   if (std::ranges::all_of(result.difference, [](float value) { return std::isnan(value); }))
     fail("{}: the surveys do not overlap", options.name_after.string());
   require_seen_places(result.difference, unseen, options);
+  require_same_place(result.place, options);
   result.noise = noise_of(result.difference, unseen, maps.steepness, options, result.grid.pixel);
   fill_sigma(maps, result);
   maps = {};

@@ -12,6 +12,7 @@
 #include "compare/changes.h"
 #include "compare/noise.h"
 #include "compare/registration.h"
+#include "compare/same_place.h"
 #include "map/frame.h"
 #include "map/pixel_width.h"
 #include "map/write_maps.h"
@@ -36,9 +37,12 @@ struct CompareOptions {
   std::optional<Sigmas> sigmas = {};
   ChangeOptions changes = {};
   SurveyPhotos photos = {};
+  // Whether surveys are compared although they show different places (compare/same_place.h).
+  bool allow_other_place = false;
   // The memory that may be used. The need is checked before the maps are made.
   MemoryAllowance memory = {};
-  // For the fields `pixel`, "ground_sample_distance", and `photos.least`, "min_views".
+  // For the fields `pixel`, "ground_sample_distance", `photos.least`, "min_views", and
+  // `allow_other_place`.
   SettingNames name_of = own_name;
   // The names of the surveys in errors.
   std::filesystem::path name_before = "the earlier survey", name_after = "the later survey";
@@ -59,6 +63,7 @@ struct Comparison {
   cv::Mat1f sigma;                // standard deviation of the difference [m]
   double registration_sigma = 0;  // median of its part of the standard deviations [m]
   Registration registration;
+  PlaceAgreement place;
   Noise noise;
   Changes changes;
   int least_pixels = 0;    // of a region, see compare_surveys()
@@ -95,7 +100,9 @@ Eigen::Vector3d upward_direction(const Mesh& mesh, const Eigen::Vector3d& facing
 // pixels (ChangeOptions::least_pixels), because neighbouring pixels then show the same noise.
 //
 // Error if a mesh is none (check_mesh()), if the surveys do not overlap, if they cannot be
-// aligned (register_surveys()); these two name the later survey. Error if the map has too many
+// aligned (register_surveys()); these two name the later survey. Error that names both surveys if
+// their reliefs show different places, unless CompareOptions::allow_other_place is set; the places
+// that photographs do not see do not count. Error if the map has too many
 // pixels (grid_around()), if the photographs see no place of both surveys, and if the memory does
 // not suffice. The result does not depend on the number of threads.
 Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,

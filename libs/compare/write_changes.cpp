@@ -56,6 +56,16 @@ Json json_of(const Registration& registration, const Eigen::Matrix3d& axes, doub
           {"matrix", rows}};
 }
 
+Json json_of(const PlaceAgreement& place) {
+  const Json same =
+      place.verdict == PlaceVerdict::unknown ? Json() : Json(place.verdict == PlaceVerdict::same);
+  return {{"same", same},
+          {"correlation", place.correlation},
+          {"least", place.least},
+          {"by_chance", place.chance},
+          {"relief", place.relief}};
+}
+
 Json json_of(const Noise& noise) {
   return {{"given", noise.is_given},        {"sigma", noise.typical},
           {"local_sigma", noise.local},     {"lowest_sigma", noise.lowest},
@@ -116,7 +126,8 @@ Json to_json(const Comparison& comparison, const ChangeFacts& facts) {
             {"came", json_of(changes.came, came)},
             {"gone", json_of(changes.gone, changes.regions.size() - came)},
             {"net", {{"volume", changes.net}, {"volume_sigma", changes.net_sigma}}},
-            {"noise", json_of(comparison.noise)}};
+            {"noise", json_of(comparison.noise)},
+            {"place", json_of(comparison.place)}};
   json["registration"] = facts.aligned ? json_of(comparison.registration, comparison.frame.axes,
                                                  comparison.registration_sigma)
                                        : Json();

@@ -15,6 +15,7 @@
 #include "densify/scene_memory.h"
 #include "io/images/bit_depth.h"
 #include "io/images/image.h"
+#include "io/images/photograph_size.h"
 #include "io/openmvs/point_source.h"
 
 namespace axial::densify {
@@ -22,19 +23,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-cv::Size size_to_work_on(const SceneImage& image, const cv::Size& file_size,
-                         const Settings& settings) {
-  if (!same_shape(file_size, {image.camera.width, image.camera.height}))
-    fail("{}: is {}x{}, but its camera is {}x{}", image.path, file_size.width, file_size.height,
-         image.camera.width, image.camera.height);
-  return working_size(file_size.width, file_size.height, settings.resolution);
-}
-
 View load_view(const SceneImage& image, std::size_t index, const Settings& settings) {
   View view;
   view.id = image.id == kNoId ? static_cast<std::uint32_t>(index) : image.id;
   view.file = io::read_image_header(image.path);
-  const cv::Size size = size_to_work_on(image, view.file.size, settings);
+  const cv::Size size =
+      working_size(view.file.size.width, view.file.size.height, settings.resolution);
   view.camera = image.camera.resized(size.width, size.height);
   view.pose = image.pose;
   return view;
@@ -52,6 +46,17 @@ void find_bit_depth(Project& project, const Settings& settings) {
       io::common_bit_depth(photographs, headers, settings.bit_depth, settings.name_of("bit_depth"));
 }
 
+void check_sizes(const Project& project) {
+  std::vector<io::PhotographSize> sizes;
+  for (std::size_t i = 0; i < project.views.size(); ++i) {
+    const SceneImage& image = project.scene.images[i];
+    if (image.calibrated)
+      sizes.push_back(
+          {image.path, project.views[i].file.size, {image.camera.width, image.camera.height}});
+  }
+  io::check_photograph_sizes(sizes);
+}
+
 void load_views(Project& project, const Settings& settings) {
   const std::size_t count = project.scene.images.size();
   project.views.resize(count);
@@ -61,6 +66,7 @@ void load_views(Project& project, const Settings& settings) {
       error.run(i, [&] { project.views[i] = load_view(project.scene.images[i], i, settings); });
   });
   error.rethrow();
+  check_sizes(project);
   choose_masks(project, settings);
   find_bit_depth(project, settings);
 }

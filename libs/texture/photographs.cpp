@@ -15,6 +15,7 @@
 #include "io/images/bit_depth.h"
 #include "io/images/image.h"
 #include "io/images/masks.h"
+#include "io/images/photograph_size.h"
 #include "texture/black_border.h"
 
 namespace axial::texture {
@@ -89,22 +90,24 @@ cv::Mat1b opaque_at(const cv::Mat1b& opaque, cv::Size size) {
 
 Photographs::Photographs(const Scene& scene, const fs::path& scene_file,
                          const PhotographOptions& options)
-    : choice_(options.masks), label_(options.mask_label) {
+    : choice_(options.masks),
+      label_(options.mask_label),
+      check_(std::make_unique<belong::PhotographCheck>(scene, scene_file)) {
+  std::vector<io::PhotographSize> sizes;
   std::set<std::size_t> wanted;
   if (!options.views_file.empty()) wanted = images_in(options.views_file, scene);
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
     const SceneImage& image = scene.images[i];
     if (!image.calibrated || (!options.views_file.empty() && !wanted.contains(i))) continue;
     const io::ImageHeader& header = headers_.emplace_back(io::read_image_header(image.path));
-    if (!same_shape(header.size, {image.camera.width, image.camera.height}))
-      fail("{}: is {}x{}, but its camera is {}x{}", image.path, header.size.width,
-           header.size.height, image.camera.width, image.camera.height);
+    sizes.push_back({image.path, header.size, {image.camera.width, image.camera.height}});
     const cv::Size size = working_size(header.size.width, header.size.height, options.resolution);
     images_.push_back(i);
     files_.emplace_back(image.path);
     views_.push_back({image.camera.resized(size.width, size.height), image.pose});
   }
   if (views_.empty()) fail("{}: has no calibrated image to use", scene_file.string());
+  io::check_photograph_sizes(sizes);
   bit_depth_ =
       io::common_bit_depth(files_, headers_, options.bit_depth, options.name_of("bit_depth"));
   masks_.resize(views_.size());
@@ -157,6 +160,7 @@ ViewImage Photographs::load(std::size_t view) const {
   ViewImage result;
   result.color = resized_image(io::in_8_bits(photograph.pixels, bit_depth_), size);
   photograph.pixels.release();
+  check_->take(images_[view], result.color);
   leave_out(opaque_at(photograph.opaque, size), result.usable);
   if (choice_ == MaskChoice::black_border)
     leave_out(outside_black_border(result.color), result.usable);

@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <vector>
 
 #include "base/setting_names.h"
+#include "belong/photograph_check.h"
 #include "io/images/image.h"
 #include "scene/resolution.h"
 #include "scene/scene.h"
@@ -38,7 +40,7 @@ class Photographs {
   // all calibrated images of `scene`, or only the images that `views_file` names. `scene_file`: the
   // file of the scene, for messages. Error for a missing image, an image of another shape than its
   // camera's, a missing mask in `mask_folder`, a line of the views file that names no image, and if
-  // there is no image to use.
+  // there is no image to use. Sizes are checked as by io::check_photograph_sizes().
   Photographs(const Scene& scene, const std::filesystem::path& scene_file,
               const PhotographOptions& options);
 
@@ -53,6 +55,10 @@ class Photographs {
   // The photograph of a view. May be called concurrently. Error if a file cannot be read.
   ViewImage load(std::size_t view) const;
 
+  // Reports photographs that do not belong to the scene, of those that load() has returned
+  // (belong::PhotographCheck::report()). Call it before outputs are written.
+  void check() const { check_->report(); }
+
  private:
   void find_masks(const Scene& scene, const PhotographOptions& options);
 
@@ -63,6 +69,7 @@ class Photographs {
   std::vector<std::filesystem::path> files_, masks_;
   std::vector<io::ImageHeader> headers_;
   std::vector<View> views_;
+  std::unique_ptr<belong::PhotographCheck> check_;  // load() gives it the photographs
 };
 
 }  // namespace axial::texture

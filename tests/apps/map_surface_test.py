@@ -268,7 +268,7 @@ class WrongInput(MapTest):
     def test_wrong_meshes(self):
         vertices, faces = wall(cells=2)
         for expected, mesh in (("scene.ply: the mesh has no faces", (vertices, [])),
-                               ("scene.ply: no photograph shows the mesh", wall(z=-DISTANCE)),
+                               ("scene.ply: does not belong to", wall(z=-DISTANCE)),
                                ("scene.ply: the mesh has no area", ([(0, 0, 1)] * 3, [(0, 1, 2)]))):
             write(self.mesh, mesh_ply(*mesh))
             self.refuses_and_keeps(expected, *self.map())

@@ -118,7 +118,7 @@ class Refined(Scene):
                 (wall, [], "wrong.ply: the mesh has no faces"),
                 (wall, [(0, 1, 2), (0, 2, 4)], "wrong.ply"),
                 ([*wall[:3], (float("nan"), 0, 0)], [(0, 1, 2), (0, 2, 3)], "wrong.ply"),
-                (behind, [(0, 1, 2)], "wrong.ply: no two views see the same part of the mesh")):
+                (behind, [(0, 1, 2)], "wrong.ply: no camera of")):
             write(os.path.join(folder, "wrong.ply"), ply(vertices, faces))
             before = contents(folder)
             self.refuses(expected, *command)

@@ -226,7 +226,7 @@ class WrongInput(TextureTest):
         self.check("scene.ply", [*vertices[:-1], (0, NAN, 1)], faces)
         self.check("scene.ply: vertex 8 has a coordinate larger than 1e+18",
                    [*vertices[:-1], (0, 1e20, 1)], faces)
-        self.check("scene.ply: no view sees a face of the mesh", *wall(z=-1))
+        self.check("scene.ply: does not belong to", *wall(z=-1))
         self.check("no view sees a face of the mesh", vertices, [f[::-1] for f in faces])
 
     def test_files_that_are_no_meshes(self):

@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "io/images/image.h"
 #include "io/openmvs/mvs_counts.h"
+#include "private/openmvs/image_folders.h"
 #include "private/openmvs/mvs_format.h"
 #include "private/openmvs/rotation.h"
 
@@ -83,11 +84,10 @@ CameraModel camera_model(const MvsCamera& camera, const fs::path& image, const s
   return model;
 }
 
-std::string resolved_path(std::string name, const fs::path& working_folder,
-                          const std::string& where) {
+std::string resolved_path(std::string name, ImageFolders& folders, const std::string& where) {
   if (name.find('\0') != std::string::npos) fail("{} contains a NUL", where);
   std::ranges::replace(name, '\\', '/');
-  return (working_folder / name).lexically_normal().string();
+  return folders.find(name);
 }
 
 template <class T>
@@ -125,15 +125,15 @@ void check_scores(const MvsImage& record, std::size_t index, std::size_t images,
   }
 }
 
-SceneImage scene_image(const MvsFile& mvs, std::size_t index, const fs::path& working_folder,
+SceneImage scene_image(const MvsFile& mvs, std::size_t index, ImageFolders& folders,
                        const std::string& file) {
   const MvsImage& record = mvs.images[index];
   const std::string where = fmt::format("{}: images[{}]", file, index);
   SceneImage image;
   if (record.name.empty()) fail("{}.name is empty", where);
-  image.path = resolved_path(record.name, working_folder, where + ".name");
+  image.path = resolved_path(record.name, folders, where + ".name");
   if (!record.mask_name.empty())
-    image.mask_path = resolved_path(record.mask_name, working_folder, where + ".maskName");
+    image.mask_path = resolved_path(record.mask_name, folders, where + ".maskName");
   image.id = record.id == kNoId ? static_cast<std::uint32_t>(index) : record.id;
   set_camera_and_pose(record, mvs, where, image);
   check_scores(record, index, mvs.images.size(), where);
@@ -288,9 +288,9 @@ Scene read_mvs(const fs::path& path, const fs::path& working_folder) {
     fail("{}: has {} images, at least 2 are needed", file, mvs.images.size());
   check_points(mvs, file);
   Scene scene;
-  const fs::path base = absolute_folder(working_folder);
+  ImageFolders folders(absolute_folder(working_folder), path);
   for (std::size_t i = 0; i < mvs.images.size(); ++i)
-    scene.images.push_back(scene_image(mvs, i, base, file));
+    scene.images.push_back(scene_image(mvs, i, folders, file));
   require_unique_ids(scene, file);
   warn_of_normalised_cameras(scene, mvs, file);
   scene.points = std::move(mvs.points);

@@ -9,7 +9,10 @@
 namespace axial::io {
 
 // Reads a scene. Relative paths of images and masks in the file start at `working_folder` (empty:
-// the current folder). All paths in the result are absolute. Ports are not part of the format (see
+// the current folder). A file that is not there is searched for in the folder of the scene, and
+// then in the folders above it. The log states such a folder. Warns if both the working folder and
+// the folder of the scene have a file and the two files are different. All paths in the result are
+// absolute. Ports are not part of the format (see
 // housing.h). If a camera is stored without a resolution (normalised K), the resolution is read
 // from the header of the image file, and a warning states the principal point that is assumed.
 //

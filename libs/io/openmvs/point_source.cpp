@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/heap_bytes.h"
 #include "base/log.h"
+#include "io/openmvs/mesh_of_scene.h"
 #include "io/ply/ply.h"
 #include "io/textured/textured_mesh.h"
 #include "private/ply/ply_header.h"
@@ -29,13 +30,11 @@ SparsePoint sparse_point(const PointCloud& cloud, std::size_t i, std::size_t ima
   return point;
 }
 
-// Whether the positions of the file are in `frame` though the file does not say so.
+// is_without_offset(), and states it in the log.
 bool is_silently_in(const LocalFrame& frame, const std::filesystem::path& file) {
-  if (frame.is_world()) return false;
-  const MeshPlace place = mesh_place(file);
-  const bool says_where = !place.frame.is_world();
-  const Eigen::Vector3d& first = place.first_vertex;
-  return !says_where && first.norm() < frame.to_local(first).norm();
+  if (!is_without_offset(frame, file)) return false;
+  tell_lost_offset(file, frame);
+  return true;
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ namespace axial::io {
 // If the file has a comment geo_offset (in glTF, a key geo_offset), the point in this comment is
 // the origin of the stored positions. A comment geo_offset 0 0 0 counts as no comment. Without a
 // comment the frame of the stored positions is guessed, because OpenMVS's programs write
-// coordinates in the frame of their input but drop the comment geo_offset. The guess is the world
-// or `frame`, whichever has its origin nearer to the first vertex.
+// coordinates in the frame of their input but drop the comment geo_offset. The guess is that
+// of is_without_offset() (mesh_of_scene.h), and the log states it if it is `frame`.
 //
 // Errors as for read_cloud_ply and read_shape.
 PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);

@@ -15,22 +15,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Image paths in a scene count from the working folder. If a scene was moved with its images, they
-// are found relative to its file.
-void find_images(Scene& scene, const SceneFiles& files) {
-  const auto find = [&](std::string& path) {
-    std::error_code error;
-    if (path.empty() || fs::exists(path, error)) return;
-    const fs::path relative = fs::path(path).lexically_relative(files.working_folder);
-    const fs::path beside = files.scene.parent_path() / relative;
-    if (fs::exists(beside, error)) path = beside.string();
-  };
-  for (SceneImage& image : scene.images) {
-    find(image.path);
-    find(image.mask_path);
-  }
-}
-
 struct PortCount {
   std::size_t images = 0, wet = 0, flat = 0;  // calibrated, behind a port, behind a flat port
 };
@@ -55,10 +39,26 @@ void check_ports(const PortCount& count, const SceneFiles& files, const fs::path
          count.images, files.name_of("camera is flat_port"));
 }
 
+// Warns if the housing file, which is not used, gives an image of the scene a port.
+void warn_of_ignored_ports(const Scene& scene, const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) return;
+  Scene with_ports = {scene.images, {}, {}, {}, {}};
+  attach_ports(with_ports, read_housing(file, PortValues::passed_over), file.string());
+  if (const std::size_t wet = count_ports(with_ports).wet; wet > 0)
+    log_warning(
+        "{}: the ports of {} images are ignored: a scene whose poses were found with ports does "
+        "not fit pinholes",
+        file.string(), wet);
+}
+
 std::optional<Housing> attach_housing(Scene& scene, const LocalFrame& frame,
                                       const SceneFiles& files) {
-  if (files.ports == PortChoice::ignored) return {};
   const fs::path file = housing_file(files);
+  if (files.ports == PortChoice::ignored) {
+    warn_of_ignored_ports(scene, file);
+    return {};
+  }
   std::error_code error;
   if (!fs::exists(file, error)) {
     if (files.ports != PortChoice::automatic)
@@ -110,7 +110,6 @@ SceneWithCameras read_scene_with_cameras(const SceneFiles& files) {
   Scene& scene = result.scene;
   scene = read_mvs(files.scene, files.working_folder);
   result.frame = enter_local_frame(scene, files.scene);
-  find_images(scene, files);
   attach_lenses(scene, files);
   result.housing = attach_housing(scene, result.frame, files);
   if (result.housing) warn_of_missing_lenses(files);

@@ -47,8 +47,8 @@ struct SceneWithCameras {
 std::filesystem::path housing_file(const SceneFiles& files);
 
 // Reads the scene, moves it into a frame near its cameras (enter_local_frame in geo_offset.h), and
-// attaches lenses and ports. If the path of an image or a mask does not exist, its part below the
-// working folder is looked up below the scene's folder. The pixels of images are not read. The log
+// attaches lenses and ports. Paths of images and masks are found as by read_mvs() (mvs.h). The
+// pixels of images are not read. The log
 // states the housing file and the numbers of images with ports and with distorted lenses. Warns if
 // the scene has ports but no file of lenses. Error for a malformed file, if the scene or the file
 // `files.housing` does not exist, if the ports do not meet `files.ports`, and if the file

@@ -7,6 +7,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "io/openmvs/mesh_of_scene.h"
 #include "io/ply/ply.h"
 #include "private/bytes/byte_writer.h"
 #include "private/ply/ply_header.h"
@@ -127,14 +128,6 @@ std::string new_header(std::string_view text, const std::string& geo) {
   return header;
 }
 
-// The frame of the stored positions.
-LocalFrame stored_frame(const std::optional<Eigen::Vector3d>& geo_offset,
-                        const Eigen::Vector3d& first, const LocalFrame& frame) {
-  if (geo_offset) return {*geo_offset};
-  const bool is_local = first.norm() < frame.to_local(first).norm();
-  return is_local ? frame : LocalFrame{};
-}
-
 Vertices vertices_of(const PlyHeader& header, const std::string& file) {
   const auto found = std::ranges::find(header.elements, "vertex", &PlyElement::name);
   if (found == header.elements.end() || found->count == 0) fail("{}: has no vertices", file);
@@ -151,8 +144,7 @@ Vertices vertices_of(const PlyHeader& header, const std::string& file) {
 
 LocalFrame frame_of_positions(const std::filesystem::path& ply, const LocalFrame& frame) {
   const PlyPlace place = ply_place(ply);
-  if (!place.frame.is_world()) return place.frame;
-  return stored_frame({}, place.first_vertex, frame);
+  return is_without_offset(frame, ply) ? frame : place.frame;
 }
 
 void transform_ply(const std::filesystem::path& input, const std::filesystem::path& output,

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "belong/nearest_places.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <unordered_map>
+
+#include "base/parallel.h"
+#include "geometry/triangle_distance.h"
+
+namespace axial::belong {
+namespace {
+
+using Cell = std::array<std::int64_t, 3>;
+
+struct CellHash {
+  std::size_t operator()(const Cell& cell) const {
+    std::uint64_t hash = 0;
+    for (const std::int64_t i : cell)
+      hash = (hash ^ static_cast<std::uint64_t>(i)) * 0x9E3779B97F4A7C15u + (hash >> 29);
+    return static_cast<std::size_t>(hash ^ (hash >> 32));
+  }
+};
+
+// The places in cubes whose side is the reach. A cube lists the places in it and in the 26 cubes
+// around it: all places that are within the reach of a point of the cube.
+class PlaceGrid {
+ public:
+  PlaceGrid(std::span<const Eigen::Vector3d> places, double reach) : reach_(reach) {
+    all_.resize(places.size());
+    std::iota(all_.begin(), all_.end(), 0u);
+    for (const std::uint32_t i : all_) {
+      const Cell cell = cell_of(places[i]);
+      for (std::int64_t x = -1; x <= 1; ++x)
+        for (std::int64_t y = -1; y <= 1; ++y)
+          for (std::int64_t z = -1; z <= 1; ++z)
+            cells_[{cell[0] + x, cell[1] + y, cell[2] + z}].push_back(i);
+    }
+  }
+
+  // Calls visit(place) for all places that may be within the reach of the box, some of them several
+  // times.
+  template <class Visit>
+  void near(const Eigen::Vector3d& low, const Eigen::Vector3d& high, const Visit& visit) const {
+    const Cell first = cell_of(low), last = cell_of(high);
+    double cells = 1;
+    for (std::size_t k = 0; k < 3; ++k) cells *= static_cast<double>(last[k] - first[k] + 1);
+    if (cells > kMostCells) return visit_all(all_, visit);
+    for (std::int64_t x = first[0]; x <= last[0]; ++x)
+      for (std::int64_t y = first[1]; y <= last[1]; ++y)
+        for (std::int64_t z = first[2]; z <= last[2]; ++z)
+          if (const auto found = cells_.find({x, y, z}); found != cells_.end())
+            visit_all(found->second, visit);
+  }
+
+ private:
+  static constexpr double kMostCells = 1000;
+
+  template <class Visit>
+  static void visit_all(const std::vector<std::uint32_t>& places, const Visit& visit) {
+    for (const std::uint32_t place : places) visit(place);
+  }
+
+  Cell cell_of(const Eigen::Vector3d& place) const {
+    constexpr double kFar = 1e15;  // exact in double, and far beyond all places
+    Cell cell{};
+    for (std::size_t k = 0; k < 3; ++k)
+      cell[k] = static_cast<std::int64_t>(
+          std::clamp(std::floor(place[static_cast<Eigen::Index>(k)] / reach_), -kFar, kFar));
+    return cell;
+  }
+
+  double reach_;
+  std::vector<std::uint32_t> all_;
+  std::unordered_map<Cell, std::vector<std::uint32_t>, CellHash> cells_;
+};
+
+struct Nearest {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  double distance2 = 0;  // squared
+};
+
+// The corners of a part; of a point, three times the point.
+std::array<Eigen::Vector3d, 3> corners_of(const Shape& shape, std::size_t part) {
+  const auto at = [&](std::size_t i) { return Eigen::Vector3d(shape.vertices[i].cast<double>()); };
+  if (shape.faces.empty()) return {at(part), at(part), at(part)};
+  const auto& [a, b, c] = shape.faces[part];
+  return {at(a), at(b), at(c)};
+}
+
+void search(const Shape& shape, std::size_t part, const PlaceGrid& grid,
+            std::span<const Eigen::Vector3d> places, std::span<Nearest> nearest) {
+  const std::array<Eigen::Vector3d, 3> corners = corners_of(shape, part);
+  const Eigen::Vector3d low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
+  const Eigen::Vector3d high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
+  grid.near(low, high, [&](std::uint32_t i) {
+    const Eigen::Vector3d& place = places[i];
+    const Eigen::Vector3d in_box = place.cwiseMax(low).cwiseMin(high);
+    if ((in_box - place).squaredNorm() >= nearest[i].distance2) return;
+    const Eigen::Vector3d point =
+        shape.faces.empty() ? corners[0] : geometry::closest_on_triangle(place, corners);
+    const double distance2 = (point - place).squaredNorm();
+    if (distance2 < nearest[i].distance2) nearest[i] = {point, distance2};
+  });
+}
+
+}  // namespace
+
+std::vector<std::optional<Eigen::Vector3d>> nearest_places(const Shape& shape,
+                                                           std::span<const Eigen::Vector3d> places,
+                                                           double reach) {
+  constexpr std::size_t kPortions = 64;  // each has its own results, which are then joined in order
+  const PlaceGrid grid(places, reach);
+  std::vector<std::vector<Nearest>> nearest(
+      kPortions, std::vector<Nearest>(places.size(), {Eigen::Vector3d::Zero(), reach * reach}));
+  parallel_for(kPortions, [&](std::size_t portion) {
+    const std::size_t end = shape.parts() * (portion + 1) / kPortions;
+    for (std::size_t part = shape.parts() * portion / kPortions; part < end; ++part)
+      search(shape, part, grid, places, nearest[portion]);
+  });
+  std::vector<std::optional<Eigen::Vector3d>> result(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    double best = reach * reach;
+    for (const std::vector<Nearest>& portion : nearest) {
+      if (portion[i].distance2 >= best) continue;
+      best = portion[i].distance2;
+      result[i] = portion[i].point;
+    }
+  }
+  return result;
+}
+
+}  // namespace axial::belong

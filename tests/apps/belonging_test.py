@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes, clouds, scenes and photographs that do not belong together, and photographs that programs
+must find. The meshes are the true surfaces of the simulations."""
+
+import json
+import os
+import shutil
+import struct
+import tempfile
+
+from programs import ProgramTest, grey_png, main, read, run, write
+
+SIZE = ("--views", "5", "--width", "320", "--height", "240")
+OFFSET = (534000.0, 3378500.0, 0.0)
+
+
+def moved_mesh(data, change):
+    """A binary PLY mesh of floats x, y, z with its positions changed, without comments."""
+    header, body = data.split(b"end_header\n", 1)
+    lines = [line for line in header.split(b"\n") if not line.startswith(b"comment")]
+    count = next(int(line.split()[2]) for line in lines if line.startswith(b"element vertex"))
+    properties = header.split(b"element vertex")[1].split(b"element")[0].count(b"property")
+    rows = [struct.unpack_from("<3f", body, 4 * properties * i) for i in range(count)]
+    assert header.count(b"property float") == 3 and properties == 3, header
+    positions = b"".join(struct.pack("<3f", *change(row)) for row in rows)
+    return b"\n".join(lines) + b"end_header\n" + positions + body[12 * count:]
+
+
+class Belonging(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.kept = tempfile.TemporaryDirectory(prefix="axial_")
+        cls.addClassCleanup(cls.kept.cleanup)
+        for preset, name, coarseness in (("closeup", "one", "4"), ("reef", "other", "1")):
+            folder = os.path.join(cls.kept.name, name)
+            said = run("SimulateUnderwater", "--preset", preset, "--coarseness", coarseness, *SIZE,
+                       "--medium", "water", "--truth", "0", "-o", folder)
+            assert said.returncode == 0, said.stderr
+            said = run("InterfaceCOLMAP", "-i", folder + "/sparse", "--image-folder", folder + "/water",
+                       "--housing", folder + "/housing.json", "-o", folder + "/scene.mvs")
+            assert said.returncode == 0, said.stderr
+
+    def setUp(self):
+        super().setUp()
+        self.one = self.path("one")
+        shutil.copytree(os.path.join(self.kept.name, "one"), self.one)
+        self.mesh = self.path("one", "mesh.ply")
+        self.other = os.path.join(self.kept.name, "other", "mesh.ply")
+        os.mkdir(self.path("empty"))
+
+    def of_scene(self, program, *arguments):
+        return (program, "-w", self.one, "-i", "scene.mvs", *arguments)
+
+    def warnings(self, *command, **options):
+        said = self.succeeds(*command, **options).stdout
+        return [line.split("warning: ")[1] for line in said.split("\n") if "warning: " in line]
+
+    def with_mesh(self, mesh):
+        """The programs that take a scene and its mesh."""
+        cloud = os.path.join(self.one, "mesh.ply")
+        return [self.of_scene("TextureMesh", "-m", mesh, "-o", "new.glb", "--export-type", "glb"),
+                self.of_scene("MapSurface", "-m", mesh, "-o", "new"),
+                self.of_scene("ViewScene", "-p", cloud, "-m", mesh, "--report", "page")]
+
+    def refuse_mesh(self, expected, mesh):
+        for command in (*self.with_mesh(mesh), self.of_scene("RefineMesh", "-m", mesh, "-o", "new.ply")):
+            self.refuses(expected, *command)
+
+
+class Shapes(Belonging):
+    def test_the_mesh_of_the_scene_raises_no_alarm(self):
+        for command in self.with_mesh(self.mesh):
+            self.assertEqual(self.warnings(*command, "--max-threads", "1"), [], command)
+
+    def test_the_mesh_of_another_survey_is_refused(self):
+        self.refuse_mesh("other/mesh.ply: does not belong to " + self.path("one", "scene.mvs"), self.other)
+
+    def test_the_cloud_of_another_survey_is_refused(self):
+        for command in (self.of_scene("ReconstructMesh", "-p", self.other, "-o", "new.ply"),
+                        self.of_scene("ViewScene", "-p", self.other, "--report", "page")):
+            self.refuses("other/mesh.ply: does not belong to", *command)
+
+    def test_a_survey_with_the_scene_of_another_one_is_not_compared(self):
+        self.refuses("other/mesh.ply: does not belong to", "CompareSurveys", "-i", self.other, "--other",
+                     self.other, "--scene", self.path("one", "scene.mvs"), "-o", self.path("new"))
+
+    def test_millimetres_are_named(self):
+        large = self.path("large.ply")
+        write(large, moved_mesh(read(self.mesh), lambda x: [1000 * value for value in x]))
+        self.refuse_mesh("the mesh is 1000 times too large: is it in millimetres?", large)
+        warnings = self.warnings(*self.of_scene("TransformScene", "--mesh-file", large, "--transform-file",
+                                                self.identity(), "-o", "moved.mvs"))
+        self.assertIn("is 1000 times too large", warnings[0])
+
+    def identity(self):
+        write(self.path("identity.txt"), "1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1\n")
+        return self.path("identity.txt")
+
+
+class Offsets(Belonging):
+    def setUp(self):
+        super().setUp()
+        write(self.path("one", "scene.geo.json"), json.dumps({"version": 1, "geo_offset": OFFSET}))
+
+    def test_a_mesh_that_lost_its_offset_is_local(self):
+        # The scene is local, and states its offset. The mesh is local, and states none.
+        glb = self.path("one", "lost.glb")
+        for command in self.with_mesh(self.mesh):
+            said = self.succeeds(*command).stdout
+            self.assertIn("mesh.ply: states no offset; its coordinates count from the scene's offset 534000 "
+                          "3378500 0", said, command)
+        os.rename(self.path("one", "new.glb"), glb)
+        self.remove_offset(glb)
+        for command in self.with_mesh(glb):
+            if command[0] in ("MapSurface", "ViewScene"):
+                self.assertIn("lost.glb: states no offset", self.succeeds(*command).stdout)
+
+    def remove_offset(self, glb):
+        """Overwrites the key of the offset with another one of the same length."""
+        data = read(glb)
+        self.assertIn(b'"geo_offset"', data)
+        write(glb, data.replace(b'"geo_offset"', b'"no_offset_"'))
+
+    def test_no_camera_sees_a_mesh_at_another_place(self):
+        far = self.path("far.ply")
+        write(far, moved_mesh(read(self.mesh), lambda x: (x[0] + 5000, x[1], x[2])))
+        self.refuse_mesh("far.ply: no camera of", far)
+
+    def test_local_coordinates_in_a_reference_system_are_noticed(self):
+        map_of = lambda: self.warnings(*self.of_scene("MapSurface", "-m", self.mesh, "-o", "new", "--epsg",
+                                                      "32631", "--up", "0,0,1"))
+        self.assertEqual(map_of(), [])
+        os.remove(self.path("one", "scene.geo.json"))
+        self.assertIn("--epsg 32631: the coordinates of", map_of()[0])
+
+
+class Photographs(Belonging):
+    def photograph(self, number):
+        return self.path("one", "water", f"{number:04}.jpg")
+
+    def programs(self):
+        return self.with_mesh(self.mesh)
+
+    def test_exchanged_photographs_are_named(self):
+        shutil.move(self.photograph(1), self.path("a.jpg"))
+        shutil.move(self.photograph(4), self.photograph(1))
+        shutil.move(self.path("a.jpg"), self.photograph(4))
+        for command in self.programs():
+            warnings = self.warnings(*command)
+            self.assertEqual(len(warnings), 2, (command, warnings))
+            for warning, number in zip(warnings, (1, 4)):
+                self.assertTrue(warning.startswith(self.photograph(number) + ": the photograph does not show"),
+                                warning)
+
+    def test_blank_photographs_are_named_and_refused_if_all_are(self):
+        grey = grey_png([b"\x80" * 320] * 240)
+        write(self.photograph(2), grey)
+        for command in self.programs():
+            self.assertIn(self.photograph(2) + ": the photograph is blank", self.warnings(*command)[0])
+        for number in range(5):
+            write(self.photograph(number), grey)
+        for command in self.programs():
+            shutil.rmtree(self.path("one", "page"), ignore_errors=True)
+            said = run(*command)
+            self.assertEqual(said.returncode, 1, (command, said.stderr))
+            self.assertIn("scene.mvs: 5 of 5 photographs are blank", said.stderr)
+
+    def test_small_photographs_are_noticed_and_tiny_ones_refused(self):
+        write(self.photograph(2), grey_png([bytes(range(160))] * 120))
+        for command in (*self.programs(), self.of_scene("DensifyPointCloud", "-o", "new.mvs")):
+            self.assertTrue(any("0002.jpg: is 160x120, but its camera is 320x240: 1 of 5 photographs are "
+                                "smaller" in warning for warning in self.warnings(*command)), command)
+        write(self.photograph(2), grey_png([b"\x80"]))
+        for command in (*self.programs(), self.of_scene("DensifyPointCloud", "-o", "new2.mvs")):
+            shutil.rmtree(self.path("one", "page"), ignore_errors=True)
+            self.refuses("0002.jpg: is 1x1, too small for its camera, which is 320x240", *command)
+
+    def test_ignored_ports_are_noticed(self):
+        warnings = self.warnings(*self.of_scene("TextureMesh", "-m", self.mesh, "-o", "new.glb",
+                                                "--camera-model", "pinhole"))
+        self.assertIn("scene.housing.json: the ports of 5 images are ignored", warnings[0])
+
+
+class Folders(Belonging):
+    def test_photographs_are_found_beside_the_scene_and_above_it(self):
+        os.mkdir(self.path("one", "run"))
+        for name in ("scene.mvs", "scene.housing.json", "scene.lenses.json"):
+            shutil.copy(self.path("one", name), self.path("one", "run", name))
+        for folder in (self.one, self.path("one", "run")):
+            scene = os.path.join(folder, "scene.mvs")
+            for command in (("TextureMesh", "-i", scene, "-m", self.mesh, "-o", self.path("new.glb")),
+                            ("MapSurface", "-i", scene, "-m", self.mesh, "-o", self.path("new")),
+                            ("ViewScene", "-i", scene, "-p", self.mesh, "--report", self.path("page")),
+                            ("DensifyPointCloud", "-i", scene, "-o", self.path("new.mvs")),
+                            ("TransformScene", "-i", scene, "--max-resolution", "100", "-o",
+                             self.path("small.mvs"))):
+                said = self.succeeds(*command, cwd=self.path("empty")).stdout
+                self.assertIn(f"scene.mvs: the paths of its images start at {self.one}", said, command)
+
+    def test_two_files_of_one_name_are_noticed(self):
+        shutil.copytree(self.path("one", "water"), self.path("empty", "water"))
+        warnings = self.warnings("TextureMesh", "-i", self.path("one", "scene.mvs"), "-m", self.mesh, "-o",
+                                 self.path("new.glb"), cwd=self.path("empty"))
+        self.assertIn(self.path("empty", "water", "0000.jpg") + " is used, although " + self.photograph(),
+                      warnings[0])
+
+    def photograph(self):
+        return self.path("one", "water", "0000.jpg")
+
+
+if __name__ == "__main__":
+    main()
