@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -14,7 +16,7 @@ using Json = nlohmann::json;
 std::string shortened(const Json& json) {
   constexpr std::size_t kLongest = 60;
   const std::string text = to_text(json);
-  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+  return text.size() <= kLongest ? text : fmt::format("{}...", text.substr(0, kLongest));
 }
 
 // JSON does not distinguish 4 and 4.0.
