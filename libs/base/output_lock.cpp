@@ -64,6 +64,17 @@ bool is_file(int descriptor, const fs::path& file) {
          open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
+// Whether a file of this content is a lock: it is empty, or its first line is one that
+// note_this_process() writes.
+bool is_lock(const std::string& content) {
+  std::istringstream line(content.substr(0, content.find('\n')));
+  std::string machine, day, time, more;
+  long process = 0;
+  if (content.empty()) return true;
+  return (line >> process >> machine >> day >> time) && !(line >> more) && process > 0 &&
+         day.size() == 10 && day[4] == '-' && day[7] == '-' && time.size() == 8;
+}
+
 enum class Outcome { locked, held_by_others, no_locks };
 
 Outcome try_lock(int descriptor, int operation) {
@@ -87,18 +98,23 @@ void note_this_process(int descriptor, LockUse use) {
 OutputLock::OutputLock(fs::path output, LockUse use) : file_(output) {
   file_ += ".lock";
   const int operation = use == LockUse::alone ? LOCK_EX : LOCK_SH;
-  // A file that another process removed while this one opened it locks nothing.
-  for (;;) {
+  // A file that another process removed while this one opened it locks nothing. The number of
+  // attempts is limited, because some file systems never state the same number for the same file.
+  constexpr int kAttempts = 1000;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const int opened = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (opened < 0) return;
     const Outcome outcome = try_lock(opened, operation);
-    if (outcome == Outcome::locked && is_file(opened, file_)) {
+    const std::string content = content_of(opened);
+    if (outcome == Outcome::locked && is_file(opened, file_) && is_lock(content)) {
       descriptor_ = opened;
       note_this_process(opened, use);
       return;
     }
-    const std::string content = content_of(opened);
     ::close(opened);
+    if (!is_lock(content))
+      fail("{}: is not a lock of this program, and would be overwritten: rename it",
+           file_.string());
     if (outcome == Outcome::no_locks) return;
     if (outcome == Outcome::held_by_others)
       fail("{}: another run writes it: {}; start again when that run has ended", output.string(),

@@ -17,8 +17,9 @@ enum class LockUse { alone, shared };
 class OutputLock {
  public:
   // Throws an Error that names `output` and the process that holds the lock if another process, or
-  // another object of this process, holds it. If the file system has no locks, or if the folder
-  // does not exist or cannot be written, nothing is locked and no Error is thrown.
+  // another object of this process, holds it. Throws an Error that names the file <output>.lock if
+  // another program wrote the file; the file stays as it is. If the file system has no locks, or if
+  // the folder does not exist or cannot be written, nothing is locked and no Error is thrown.
   explicit OutputLock(std::filesystem::path output, LockUse use = LockUse::alone);
   ~OutputLock();
   OutputLock(const OutputLock&) = delete;

@@ -92,6 +92,16 @@ TEST_F(Locked, OtherOutputsAreFree) {
   EXPECT_TRUE(fs::exists(output.parent_path() / "scene.mvs.lock"));
 }
 
+// For example the file scene_dense.mvs.lock of a program that keeps versions of files.
+TEST_F(Locked, AFileOfAnotherProgramIsKept) {
+  for (const std::string text : {"packages = []\n", "12 apples\n", "7 a b c d\n", "\n"}) {
+    write_atomically(file, text);
+    EXPECT_THAT(error(LockUse::alone), HasSubstr(file.string() + ": is not a lock"));
+    EXPECT_THAT(error(LockUse::shared), HasSubstr(file.string() + ": is not a lock"));
+    EXPECT_EQ(read_file(file), text);
+  }
+}
+
 TEST_F(Locked, AFolderThatDoesNotExistIsNotLocked) {
   const OutputLock lock(output.parent_path() / "none" / "scene.mvs");
   EXPECT_FALSE(fs::exists(output.parent_path() / "none"));
