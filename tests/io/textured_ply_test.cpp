@@ -107,6 +107,27 @@ TEST_F(TexturedPlyTest, StripsOfTriangles) {
               ElementsAre(Face{0, 1, 2}, Face{2, 1, 3}, Face{3, 2, 1}));
 }
 
+// Strips have neither marks nor texture coordinates. A file may have faces, too, in either order.
+TEST_F(TexturedPlyTest, StripsBesideFaces) {
+  const std::string strips = "element tristrips 1\nproperty list int int vertex_indices\n";
+  const std::string faces =
+      "element face 1\nproperty list uchar int vertex_indices\n"
+      "property list uchar float texcoord\nproperty uchar unseen\n";
+  const std::string strip = "4 0 1 2 3\n", face = "3 0 1 2 6 0 0 1 0 0 1 1\n";
+  const auto write_mesh = [&](const std::string& elements, const std::string& rows) {
+    write_atomically(folder_ / "m.ply",
+                     "ply\nformat ascii 1.0\ncomment TextureFile t.png\nelement vertex 4\n"
+                     "property float x\nproperty float y\nproperty float z\n" +
+                         elements + "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n" + rows);
+  };
+  write_mesh(faces + strips, face + strip);
+  EXPECT_THAT(read_shape(folder_ / "m.ply").unseen, ElementsAre(1, 0, 0));
+  write_mesh(strips + faces, strip + face);
+  EXPECT_THAT(read_shape(folder_ / "m.ply").unseen, ElementsAre(0, 0, 1));
+  EXPECT_THAT(test::error_of([&] { read_textured_mesh(folder_ / "m.ply"); }),
+              HasSubstr("3 triangles, but texture coordinates of 1"));
+}
+
 TEST_F(TexturedPlyTest, ATextureWithoutCoordinatesMakesNoTexturedMesh) {
   const fs::path file = write("comment TextureFile t.png\n", "", "",
                               {"0 0 0", "1 0 0", "1 1 0", "0 1 0"}, {"3 0 1 2"});

@@ -26,7 +26,8 @@ void read_faces(PlyBody& body, const PlyElement& element, const std::string& fil
   if (corners_at == kNoProperty && element.count > 0)
     fail("{}: element face has no list vertex_indices", file);
   const std::size_t unseen_at = find_property(element, "unseen", false);
-  mesh.faces.reserve(element.count);
+  if (unseen_at != kNoProperty) mesh.unseen.resize(mesh.faces.size());  // strips have no marks
+  mesh.faces.reserve(mesh.faces.size() + element.count);
   std::vector<double> corners;
   double unseen = 0;
   for (std::size_t i = 0; i < element.count; ++i) {
@@ -124,6 +125,7 @@ Mesh read_mesh(const std::filesystem::path& path, const LocalFrame* frame) {
   }
   body.require_end();
   check_faces(mesh, file);
+  if (!mesh.unseen.empty()) mesh.unseen.resize(mesh.faces.size());  // strips have no marks
   return mesh;
 }
 

@@ -114,6 +114,9 @@ class TexturedPlyReader {
       read_faces(bytes);
     else
       use_vertices(bytes);
+    if (result_.uv.size() != result_.mesh.faces.size())
+      fail("{}: has {} triangles, but texture coordinates of {}", file_, result_.mesh.faces.size(),
+           result_.uv.size());
     textures_.finish(result_);
     return std::move(result_);
   }
