@@ -159,6 +159,19 @@ TEST_F(ReadObjTest, SeveralMaterialFiles) {
               ElementsAre(folder_ / "m.obj", folder_ / "none.mtl"));
 }
 
+// Programs write the line mtllib in front of each object.
+TEST_F(ReadObjTest, ARepeatedMaterialFileIsReadOnce) {
+  const std::string object = "mtllib m.mtl\nusemtl wall\nf 1/1 2/2 3/3\n";
+  EXPECT_EQ(read(kPoints + object + object + object).textures.size(), 1u);
+}
+
+// Each of the 100,000 beginnings of the line could be the name of a file.
+TEST_F(ReadObjTest, ALongListOfMaterialFilesEnds) {
+  std::string line = "mtllib";
+  for (int i = 0; i < 100'000; ++i) line += " x";
+  EXPECT_THAT(error(line + "\n" + kPoints + "f 1 2 3\n"), HasSubstr("cannot be"));
+}
+
 TEST_F(ReadObjTest, VerticesHaveColours) {
   write("m.obj", "v 0 0 0 1 0.5 0\nv 1 0 0 0 0 1\nv 0 1 0 0 1 0\nf 1 2 3\n");
   EXPECT_THAT(read_shape(folder_ / "m.obj").colors,

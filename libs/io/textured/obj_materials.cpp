@@ -147,10 +147,13 @@ std::vector<ObjMaterial> read_obj_materials(const fs::path& mtl) {
 }
 
 std::vector<fs::path> material_files(const fs::path& folder, std::string_view names) {
+  // Each beginning of the names costs a look into the folder. A line of a megabyte would take
+  // hours.
+  constexpr std::size_t kLongestName = 1024;
   std::vector<fs::path> files;
   while (!names.empty()) {
     // The longest beginning, up to a blank, that names a file.
-    std::size_t end = names.size();
+    std::size_t end = std::min(names.size(), kLongestName);
     std::optional<fs::path> found;
     while (!(found = file_beside(folder, std::string(names.substr(0, end))))) {
       const std::size_t blank = names.find_last_of(kBlanks, end - 1);

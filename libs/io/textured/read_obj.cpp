@@ -3,7 +3,9 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -110,8 +112,7 @@ class ObjReader {
         const auto u = values.number<double>("u");
         uv_.emplace_back(u, values.empty() ? 0.0 : values.number<double>("v"));
       } else if (textured_ && key == "mtllib") {
-        for (const fs::path& mtl : material_files(path_.parent_path(), line->rest()))
-          add_materials(mtl);
+        read_material_files(line->rest());
       } else if (key == "surf" || key == "call") {
         fail("{}: '{}' is not supported", line->where(), key);
       }
@@ -153,6 +154,12 @@ class ObjReader {
             std::lround(std::clamp(scale * color[static_cast<Eigen::Index>(k)], 0.0f, 255.0f)));
     }
     return result;
+  }
+
+  // Programs repeat the line for each object: a file of the same names is read once.
+  void read_material_files(std::string_view names) {
+    if (!material_lines_.emplace(names).second) return;
+    for (const fs::path& mtl : material_files(path_.parent_path(), names)) add_materials(mtl);
   }
 
   void add_materials(const fs::path& mtl) {
@@ -248,9 +255,10 @@ class ObjReader {
   std::vector<Eigen::Vector3f> colors_;
   std::vector<Eigen::Vector2d> uv_;
   std::map<std::string, UsedMaterial> materials_;
-  UsedMaterial white_;                          // the format's material of faces without one
-  UsedMaterial* material_ = &white_;            // of the next faces
-  std::size_t vertices_ = 0, coordinates_ = 0;  // before the line that is read
+  std::set<std::string, std::less<>> material_lines_;  // the names behind mtllib
+  UsedMaterial white_;                                 // the format's material of faces without one
+  UsedMaterial* material_ = &white_;                   // of the next faces
+  std::size_t vertices_ = 0, coordinates_ = 0;         // before the line that is read
   std::optional<Eigen::Vector3d> offset_;
   TexturedMesh result_;
 };
