@@ -174,6 +174,16 @@ TEST_F(ReadGltfTest, NodesThatMakeNoTreeAreRefused) {
   EXPECT_THAT(error(builder), HasSubstr("nodes[0].mesh is -1"));
 }
 
+// The product of nodes and primitives, not the size of the file, takes the memory.
+TEST_F(ReadGltfTest, ManyNodesWithAMeshOfManyPrimitivesAreRefused) {
+  GltfBuilder builder;
+  const json primitive = builder.mesh({{"POSITION", builder.positions(kTriangle)}});
+  json& primitives = builder.json["meshes"][0]["primitives"];
+  for (int i = 0; i < 500; ++i) primitives.push_back(primitive);
+  for (int i = 0; i < 500; ++i) builder.node({{"mesh", 0}});
+  EXPECT_THAT(error(builder), HasSubstr("nodes[499] exceeds the 250000 primitives"));
+}
+
 TEST_F(ReadGltfTest, AccessorsOutsideOfTheirDataAreRefused) {
   const auto error_with = [&](const char* list, const char* key, const json& value) {
     GltfBuilder builder = with_picture({0, 0, 1, 0, 0, 1});

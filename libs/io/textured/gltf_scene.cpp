@@ -114,6 +114,10 @@ std::vector<std::size_t> roots_of_default_scene(const GltfFile& file) {
   return file.item("scenes", named.value_or(0)).indices("nodes");
 }
 
+// A small file can show a mesh of many primitives by many nodes, so that the product exhausts the
+// memory.
+constexpr std::size_t kMostPrimitives = 250'000;
+
 struct PlacedNode {
   std::size_t node;
   Eigen::Matrix4d parent;
@@ -124,6 +128,10 @@ void add_node(const GltfFile& file, const GltfObject& node, const Eigen::Matrix4
   if (!node.index("mesh")) return;
   if (node.index("skin")) node.refuse("has a skin, which is not supported");
   GltfInstance instance{placement, !placement.isIdentity(0), primitives_of(file, node)};
+  scene.primitives += instance.primitives.size();
+  if (scene.primitives > kMostPrimitives)
+    node.refuse(
+        fmt::format("exceeds the {} primitives that the nodes may have together", kMostPrimitives));
   for (const GltfPrimitive& primitive : instance.primitives) {
     const GltfMaterial material = material_of(file, primitive);
     scene.textured |= material.image.has_value();

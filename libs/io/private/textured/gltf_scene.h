@@ -33,6 +33,7 @@ struct GltfInstance {
 
 struct GltfScene {
   std::vector<GltfInstance> instances;
+  std::size_t primitives = 0;                 // of all instances
   std::optional<Eigen::Vector3d> geo_offset;  // from the extras of a node
   bool textured = false;                      // a primitive has a baseColorTexture
   bool colored = false;                       // a primitive has COLOR_0 or a baseColorFactor
@@ -40,8 +41,8 @@ struct GltfScene {
 
 // Walks through the nodes of the default scene: the scene that the file names, otherwise its first
 // scene, otherwise the nodes that are no children. Error that names the file and the node for a
-// node that is used twice, a transformation that is malformed, a skin, or morph targets with
-// weights.
+// node that is used twice, a transformation that is malformed, a skin, morph targets with weights,
+// or more than 250,000 primitives of all nodes together.
 GltfScene scene_of(const GltfFile& file);
 
 struct GltfCounts {
