@@ -215,6 +215,10 @@ std::vector<Output> all_outputs(const Options& options, const Files& files, cons
   return outputs;
 }
 
+void tell_samples(const Options& options) {
+  if (options.sample_mesh != 0) log_info("{}: points on the mesh", samples_file(options).string());
+}
+
 // No file changes before all inputs are read. The files beside the scene are written before the
 // scene: without them the scene would be read as a scene without ports at the origin.
 void write_all(const Options& options, const Files& files, const FrameMove& move,
@@ -233,6 +237,7 @@ void write_all(const Options& options, const Files& files, const FrameMove& move
   for (const MovedPly& ply : files.plys)
     log_info("{}: transformed {}", ply.output.string(), ply.what);
   if (files.mesh) log_info("{}: transformed mesh", files.mesh->outputs[0].string());
+  tell_samples(options);
   if (options.max_resolution > 0)
     log_info("{} of {} images were shrunk to at most {} pixels, in {}", images.size(),
              scene.scene.images.size(), options.max_resolution,
@@ -275,6 +280,7 @@ int run(int argc, char** argv) {
   if (options.compute_volume) measure_volume(options, scene.scene, move);
   if (!options.writes_scene()) {
     if (options.sample_mesh != 0) write_samples(options, move, samples_file(options));
+    tell_samples(options);
     return 0;
   }
   std::vector<SmallImage> images;

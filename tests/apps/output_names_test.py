@@ -253,9 +253,10 @@ class OptionsOfOpenMvs(Wall):
     def test_points_on_the_mesh(self):
         area = 0.6 * 0.6
         for number, expected in (("-500", 500), ("1000", round(1000 * area))):
-            made, _ = self.new_files(*self.command("TransformScene", "-t", "t.txt", "-o", "moved",
-                                                   "--sample-mesh", number))
+            made, said = self.new_files(*self.command("TransformScene", "-t", "t.txt", "-o", "moved",
+                                                      "--sample-mesh", number))
             self.assertIn("moved_samples.ply", made)
+            self.assertIn("moved_samples.ply: points on the mesh", said)
             head, body = self.at("moved_samples.ply").split(b"end_header\n", 1)
             count = int(re.search(rb"element vertex (\d+)", head)[1])
             self.assertLessEqual(abs(count - expected), 1)
@@ -267,8 +268,9 @@ class OptionsOfOpenMvs(Wall):
                 self.assertLess(abs(off), 1e-5)
             for name in made:
                 os.remove(self.path("work", name))
-        made, _ = self.new_files(*self.command("TransformScene", "--sample-mesh", "-5"))
+        made, said = self.new_files(*self.command("TransformScene", "--sample-mesh", "-5"))
         self.assertEqual(made, {"scene_transform_samples.ply"})
+        self.assertIn("scene_transform_samples.ply: points on the mesh", said)
         self.refuses_and_keeps("--sample-mesh needs --mesh-file",
                                *self.command("TransformScene", "--sample-mesh", "-5", mesh=None))
 
