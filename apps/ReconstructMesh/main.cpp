@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 // The memory of the program itself: code and libraries, stacks, small blocks.
 constexpr std::uint64_t kProgramBytes = 60 * kMegabyte;
 
-// Runs that make tiles of one mesh at the same time are no rivals.
+// Several runs may make tiles of one mesh at the same time.
 LockUse lock_use(const Options& options) {
   return options.tile > 0 ? LockUse::shared : LockUse::alone;
 }
