@@ -328,7 +328,7 @@ std::optional<PositionRow> read_any(std::string_view text, const PositionLayout&
   if (is_pose_of_colmap(text))
     fail(
         "{}: is a line of COLMAP's images.txt, which has no camera centres; AlignModel takes a "
-        "model as --reference",
+        "model as its reference",
         where);
   fail("{}: must be NAME X Y Z", where);
 }
