@@ -12,8 +12,15 @@ import re
 from . import files
 from .failure import Failure
 
+TEXTURED = (".glb", ".ply", ".obj", ".mtl", ".gltf", ".bin", "[0-9].png", "[0-9][0-9].png",
+            "[0-9][0-9][0-9].png")
+TILE = ".tile[0-9]*-[0-9]*"
+MAPS = ("dem.tif", "ortho.tif", "views.tif", "sigma.tif", "hillshade.tif", "contours.geojson", "jpg")
+CHANGES = ("difference.tif", "sigma.tif", "significant.tif", "json", "jpg")
+
 # What each step may write or remove in the output folder, with any options, in the order of the
-# steps. A name that is a folder stands for everything in the folder.
+# steps. A name that is a folder stands for everything in the folder. Steps that remove files name each
+# kind of file, because users put their own beside them, such as scene_map.qgz of QGIS.
 WRITES = {
     "masks": ["colmap_masks"],
     "features": ["features.db", "features.db-*", "still_features.json", "still_features.png"],
@@ -25,9 +32,10 @@ WRITES = {
                 "steps/plan.json"],
     "mesh": ["scene_dense_mesh.*"],
     "refine-mesh": ["scene_dense_refined.*"],
-    "texture": ["scene_textured.*", "scene_textured_*"],
-    "map": ["scene_map.*"],
-    "compare": ["scene.change.*", "scene_change.*"],  # the last: of older versions
+    "texture": [f"scene_textured{tile}{end}" for tile in ("", TILE) for end in TEXTURED],
+    "map": [f"scene_map.{kind}" for kind in MAPS],
+    "compare": [f"{name}.{kind}" for name in ("scene.change", "scene_change")  # the last: of older versions
+                for kind in CHANGES],
     "page": ["page", "run.json", "run.json.tmp"],
     "evaluate": ["evaluation.json"]}
 ORDER = list(WRITES)
