@@ -216,7 +216,8 @@ class Positions(InFolder):
                      "WGS84 UTM 33N\nIMG_1.JPG 1.5 2 -3 0 0 0 .1 .2 x\nIMG_2.JPG 4 5 6\n",
                      "#Label,Y/Northing,X/Easting,Z/Altitude,Accuracy_(m),Error_(m)\n"
                      "IMG_1,2,1.5,-3,0.1,9\nIMG_2,5,4,6,,\nc d,,,,,\n# Total,,,,0.1,\n",
-                     "name x y z\nIMG_1 1.5 2 -3\nIMG_2 4 5 6\n"):
+                     "name x y z\nIMG_1 1.5 2 -3\nIMG_2 4 5 6\n",
+                     "dive1//IMG_1.JPG 1.5 2 -3\ndive1/x/../IMG_2 4 5 6 # a\u2028comment\n"):
             file = self.write("positions.csv", text)
             self.assertEqual(positions.read(file, names), expected, text)
         file = self.write("degrees.csv", "name,latitude,longitude,altitude\nIMG_1,54.25,16.5,-3\n"
@@ -229,7 +230,8 @@ class Positions(InFolder):
 
     def test_names_of_no_photograph_are_told(self):
         for name in ("a.jpg", "b.jpg", "c.jpg"):
-            self.write(name, "")
+            self.write(name, grey_png([bytes(4)] * 3))
+        self.write("C.txt", "no photograph")
         file = self.write("positions.txt",
                           "a.jpg 0 0 0\nb.jpg 1 0 0\n# d.jpg\nc.jpg 0 1 0\nC.jpg 0 1 0\n")
         said = self.said_by(positions.check, file, self.folder)

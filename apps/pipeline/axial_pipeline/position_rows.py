@@ -214,7 +214,8 @@ def lines_of(file):
     data = file.read_bytes()
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise Failure(f"{file}: is UTF-16; save it as UTF-8")
-    return data.decode("utf-8-sig", errors="replace").splitlines()
+    text = data.decode("utf-8-sig", errors="replace")
+    return (text if "\n" in text else text.replace("\r", "\n")).split("\n")
 
 
 def entries_of(file, known):

@@ -4,8 +4,9 @@ position. Lines and names are read as RefinePoses reads them."""
 
 import math
 import pathlib
+import posixpath
 
-from . import position_rows
+from . import photographs, position_rows
 from .failure import Failure
 
 PREFIX = "positions:"
@@ -55,7 +56,7 @@ class Labels:
         rank = 0
         for (whole, ends), key in zip(self.tables, self.variants(False)):
             for path in (label, slashes.replace("\\", "/")):
-                path = key(path.removeprefix("./"))
+                path = key(posixpath.normpath(path)) if path else ""
                 longest = lambda table: next((table[end] for end in path_ends(path) if end in table),
                                              None)
                 for found in (whole.get(path), ends.get(path), longest(whole),
@@ -94,8 +95,9 @@ def read(file, names):
 
 
 def names_in(images):
-    """The names of the files below a folder, as COLMAP names them."""
-    return [path.relative_to(images).as_posix() for path in sorted(images.rglob("*")) if path.is_file()]
+    """The names of the photographs below a folder, as COLMAP names them. Other files beside them, such
+    as 1.xmp beside 1.jpg, must not make the label 1 ambiguous."""
+    return list(photographs.found_in(images).images)
 
 
 def check(file, images):
