@@ -26,29 +26,45 @@ class Calibration:
     refine: bool  # whether COLMAP refines the parameters; otherwise they are fixed
 
 
-def claim(work):
+def words_of(mask_command):
+    return [str(word) for word in mask_command or []]
+
+
+def is_made(work, mask_command):
+    """Whether an earlier run made `work`/model. Fails if that run had other masks."""
+    model = work / "model"
+    if not colmap.is_model(model):
+        return False
+    if files.read_object(work / RECORD).get("masks", []) != words_of(mask_command):
+        raise Failure(f"{model}: was made with other masks, or without masks; remove it, or give another "
+                      "--output")
+    return True
+
+
+def claim(work, mask_command):
     """Fails if `work` has files that a run would replace and no earlier run made. Otherwise writes the
     record of this run."""
-    makes = files.read_object(work / RECORD).get("makes", [])
+    makes = files.read_object(work / RECORD).get("makes")
+    makes = makes if isinstance(makes, list) else []
     ownership.refuse(work, sorted(
         {name for pattern in WRITES if pattern not in makes for name in ownership.existing(work, pattern)}
         | ({RECORD} if os.path.lexists(work / RECORD) and not makes else set())))
     work.mkdir(parents=True, exist_ok=True)
-    files.write(work / RECORD, json.dumps({"makes": WRITES}))
+    files.write(work / RECORD, json.dumps({"makes": WRITES, "masks": words_of(mask_command)}))
 
 
 def colmap_model(images, work, calibration, threads=None, mask_command=None):
     """Writes the model with the most images to `work`/model, and COLMAP's output to
     `work`/features.log, matches.log and mapper.log. Does nothing if `work`/model exists, because
-    COLMAP gives a different model in each run. Fails if `work` has files of others with the names of
-    its results. `threads`: of COLMAP, -1 for one on each core. `mask_command`: writes COLMAP's masks
-    into `work`/colmap_masks (masks.py)."""
+    COLMAP gives a different model in each run. Fails if this model has other masks, and if `work` has
+    files of others with the names of its results. `threads`: of COLMAP, -1 for one on each core.
+    `mask_command`: writes COLMAP's masks into `work`/colmap_masks (masks.py)."""
     model, models, database = work / "model", work / "models", work / "database.db"
-    if colmap.is_model(model):
+    if is_made(work, mask_command):
         print(f"  (kept from an earlier run: {model})", flush=True)
         return
     colmap.check_installed()
-    claim(work)
+    claim(work, mask_command)
     for path in (model, models, work / masks.FOLDER, *colmap.database_files(database)):
         files.clear(path)  # COLMAP would add to the results of a killed run
     models.mkdir(parents=True)
