@@ -60,7 +60,7 @@ class OtherFiles(FilesCase):
         names = ["colmap/model.txt", "database.db", "features.db", "lock", "logs/poses.log", "refined/notes",
                  "report.md", "scene.mvs", "steps/mesh.begun.json", "depth0000.dmap", "evaluation.json",
                  "scene_dense.ply", "scene_dense_mesh.ply", "scene_map.dem.tif", "scene_textured.glb",
-                 "scene_textured_0.png", "undistorted/a.png"]
+                 "scene_textured0.png", "undistorted/a.png"]
         for name in names:
             self.put(f"out/{name}")
         said = self.refused("--truth", "lens")
@@ -130,9 +130,9 @@ class OtherFiles(FilesCase):
 class ColmapModelFiles(InFolder):
     """Files of the user in the output folder of colmap-model."""
 
-    def run_it(self):
+    def run_it(self, *options):
         command = [sys.executable, "-B", str(PIPELINE / "colmap-model"), "--images", "images",
-                   "--camera-model", "PINHOLE", "--camera-parameters", "1,2,3,4", "-o", "out"]
+                   "--camera-model", "PINHOLE", "--camera-parameters", "1,2,3,4", "-o", "out", *options]
         return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60,
                               env={**os.environ, "PATH": f"{self.folder}/bin:{os.environ['PATH']}"})
 
@@ -150,8 +150,22 @@ class ColmapModelFiles(InFolder):
                 "file, which this run would replace; move it, or give another --output"])
             self.assertEqual(mine.read_text(), "mine")
         shutil.rmtree(self.folder / "out")
+        self.write("out/colmap-model.json", '{"makes": 3}')
+        self.assertIn("out: colmap-model.json: no record", self.run_it().stderr)
+        shutil.rmtree(self.folder / "out")
         for _ in range(2):  # the second run finds what the first one left when COLMAP failed
             self.assertIn("colmap: exit code 9", self.run_it().stderr)
+
+    def test_a_model_without_these_masks_is_not_kept_for_one_with_them(self):
+        for number in range(2):
+            self.write(f"images/{number}.png", grey_png([bytes(4)] * 3))
+        for name in ("cameras.bin", "images.bin", "points3D.bin"):
+            self.write(f"out/model/{name}", "")
+        self.assertIn("kept from an earlier run", self.run_it().stdout)
+        self.write("mask.png", grey_png([bytes(4)] * 3))
+        self.assertEqual(self.run_it("--masks", "mask.png").stderr,
+                         "colmap-model: out/model: was made with other masks, or without masks; remove it, or give "
+                         "another --output\n")
 
 
 class Photographs(FilesCase):
@@ -173,7 +187,14 @@ class Photographs(FilesCase):
         self.assertEqual(self.refused(), f"--images {images}: the photographs have different sizes: 3 of 4 x "
                          "3 pixels (0.png first), 1 of 2 x 2 pixels (.hidden/small.png); all must be of one "
                          "camera and setting: move the others to another folder")
-        other.unlink()
+        for number in range(3, 8):
+            (images / f"{number}.png").write_bytes((images / "0.png").read_bytes())
+        for number in range(3):
+            (images / f"b{number}.png").write_bytes(other.read_bytes())
+        self.assertIn("8 of 4 x 3 pixels (0.png first), 4 of 2 x 2 pixels (b0.png, b1.png, b2.png and 1 more)",
+                      self.refused())
+        for path in [other, *images.glob("b*.png")]:
+            path.unlink()
         for name in ("0.mask.png", "0.png.png", "0_mask.png"):
             shutil.copy(images / "0.png", images / name)
             self.assertIn(f"{name} is the mask of 0.png, and COLMAP would take it for a photograph",
@@ -182,6 +203,15 @@ class Photographs(FilesCase):
         os.symlink("loop.png", images / "loop.png")
         self.assertEqual(self.refused(), f"--images {images}/loop.png: is a link that leads to itself; remove "
                                          "it, because COLMAP stops there")
+
+    def test_files_beside_photographs_make_no_label_ambiguous(self):
+        self.put("images/0.xmp")
+        self.put("positions.txt", "0 0 0 0\n1 1 0 0\nimages//./2 0 1 0\n")
+        self.assertNotIn("not photographs", self.succeeds("--scale-from", "positions:positions.txt"))
+
+    def test_a_pipe_is_no_photograph(self):
+        os.mkfifo(self.folder / "images" / "pipe.png")
+        self.assertIn("pipe.png: not an image, not used", self.succeeds())
 
     def test_what_colmap_leaves_out_is_told(self):
         images = self.folder / "images"
@@ -293,6 +323,11 @@ class Masks(FilesCase):
                 (["--masks", "masks", "--ignore-mask-label", "a"],
                  "--ignore-mask-label a: must be a number from 0 to 65535")):
             self.assertEqual(self.refused(*options), said)
+        for name in ("densify", "map"):
+            option = f"--{name}=--ignore-mask-lab 3"
+            self.assertEqual(self.refused("--masks", "masks", option),
+                             f"{option.replace('=', ' ', 1)}: the label of --masks is given by "
+                             "--ignore-mask-label of reconstruct")
         self.put("out/colmap_masks/0.png")
         self.assertIn("lies in the folder that this run writes", self.refused("--masks", "out/colmap_masks"))
 
@@ -385,6 +420,16 @@ class OutOfDate(FilesCase):
         self.succeeds("--map=--hillshade")
         self.assertEqual([path.name for path in (self.folder / "out").glob("scene_map.*")
                           if path.read_text() == "mine"], [])
+
+    def test_files_of_the_user_beside_results_stay(self):
+        self.succeeds()
+        kept = [self.put(f"out/{name}") for name in
+                ("scene_map.qgz", "scene_map.dem.tif.aux.xml", "scene_textured_cleaned.ply",
+                 "scene_textured.blend", "scene_textured0 edited.png")]
+        texture = self.put("out/scene_textured1.png")
+        self.succeeds("--texture=--outlier-threshold 0.1")
+        self.assertEqual([path.name for path in kept if not path.exists()], [])
+        self.assertFalse(texture.exists())
 
 
 if __name__ == "__main__":

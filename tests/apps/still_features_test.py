@@ -3,6 +3,7 @@
 
 import array
 import contextlib
+import json
 import random
 import sqlite3
 import zlib
@@ -29,7 +30,8 @@ def descriptor(rng):
 
 
 def noisy(numbers, rng):
-    return [min(255, max(0, number + rng.randint(-6, 6))) for number in numbers]
+    noise = rng.choices(range(-6, 7), k=len(numbers))
+    return [min(255, max(0, number + more)) for number, more in zip(numbers, noise)]
 
 
 def place(rng):
@@ -101,6 +103,22 @@ class StillFeatures(InFolder):
     def test_another_file_has_none(self):
         self.assertIsNone(still_features.find(self.write("other", "text" * 100)))
         self.assertIsNone(still_features.find(self.write("empty", "")))
+
+    def test_a_damaged_database_has_none(self):
+        whole = self.database(ARM).read_bytes()
+        for change in ("data = x'0102'", "data = NULL", "data = x''", "cols = 1", "data = 'text'"):
+            path = self.write("damaged.db", whole)
+            with contextlib.closing(sqlite3.connect(path)) as connection, connection:
+                connection.execute(f"UPDATE keypoints SET {change}")
+            self.assertIsNone(still_features.find(path), change)
+
+    def test_damaged_findings_are_not_told(self):
+        region = {"pixels": [1, 2, 3, 4], "features": 9, "share": 0.5}
+        for change in ({}, {"pixels": [1]}, {"pixels": 1}, {"share": "x"}, {"features": None}):
+            self.write(still_features.FOUND, json.dumps(
+                {"features": 9, "remedy": "a mask", "regions": [{**region, **change}]}))
+            told = still_features.lines_about(self.folder)
+            self.assertEqual(len(told), 3 if not change or "features" in change else 0, change)
 
     def test_the_mask_is_black_around_them(self):
         _, _, found = still_features.find(self.database(ARM))

@@ -76,7 +76,10 @@ def image_in(data):
 
 
 def image_of(path):
-    """As image_in(), of a file. A file that cannot be read is none."""
+    """As image_in(), of a file. A file that cannot be read is none, and neither is a pipe, which could
+    not be opened before another process writes to it."""
+    if not path.is_file():
+        return None
     try:
         with open(path, "rb") as file, \
                 mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
@@ -162,7 +165,9 @@ def refuse_other_sizes(folder, images):
             by_size[image.size].append(name)
     if len(by_size) < 2:
         return
-    words = [f"{len(names)} of {width} x {height} pixels ({names[0]}{' first' if names[1:] else ''})"
+    most = max(map(len, by_size.values()))
+    words = [f"{len(names)} of {width} x {height} pixels "
+             f"({few(names) if len(names) < most or not names[1:] else names[0] + ' first'})"
              for (width, height), names in sorted(by_size.items(), key=lambda one: -len(one[1]))]
     raise Failure(f"--images {folder}: the photographs have different sizes: {few(words)}; all must be "
                   "of one camera and setting: move the others to another folder")

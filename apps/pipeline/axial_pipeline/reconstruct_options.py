@@ -8,6 +8,7 @@ import shlex
 
 from . import cluster, colmap, files, masks, matching, photographs, positions
 from .failure import Failure
+from .option_files import abbreviates, options_in
 from .ownership import ORDER, is_record
 from .programs import Programs, default_folder
 
@@ -146,6 +147,19 @@ def check_results(given):
         raise Failure(f"--earlier {given.earlier}: needs the mesh, which --until cloud does not make")
 
 
+def check_mask_labels(given):
+    """Refuses a label of masks for a program that gets the masks of --masks, which have labels of
+    their own."""
+    names = ("densify", "refine-mesh", "texture", "map") if given.masks else ()
+    options = {name: [option for option, _ in options_in(words_of(name, given))] for name in names}
+    for name in names:
+        own = options[name] + (options["texture"] if name == "map" else [])
+        has_masks = any(abbreviates(option, "--mask-path") for option in own)
+        if not has_masks and any(abbreviates(option, "--ignore-mask-label") for option in options[name]):
+            raise Failure(f"--{name} {getattr(given, name.replace('-', '_'))}: the label of --masks is "
+                          "given by --ignore-mask-label of reconstruct")
+
+
 # Records of versions that stated no time have only the time of the file, which a copy changes a bit.
 COPIED_WITHIN = 60  # seconds
 
@@ -197,9 +211,9 @@ def is_own_mesh(mesh, out):
     return mesh.parent == out and mesh.name.startswith(("scene_dense", "scene_textured"))
 
 
-def check(given):
-    """Checks everything that can be known before hours of work, and makes all paths absolute,
-    because the programs look up relative paths in different folders."""
+def check_paths(given):
+    """Checks the files and folders that a run reads, and makes their paths absolute, because the
+    programs look up relative paths in different folders."""
     for name, value in vars(given).items():
         photographs.require_utf8(f"--{name.replace('_', '-')}", value)
     for name in ("images", "lens", "housing", "truth", "earlier", "programs"):
@@ -215,11 +229,17 @@ def check(given):
             raise Failure(f"--scale-from {given.scale_from}: file not found")
         given.scale_from = positions.PREFIX + str(pathlib.Path(file).resolve())
         positions.check(pathlib.Path(file), pathlib.Path(given.images))
+
+
+def check(given):
+    """Checks everything that can be known before hours of work, and makes all paths absolute."""
+    check_paths(given)
     for program in PROGRAMS:
         if not (pathlib.Path(given.programs) / program).is_file():
             raise Failure(f"--programs {given.programs}: {program} not found; build the programs first")
     for name in (*MORE_OPTIONS, "snakemake"):
         words_of(name, given)
+    check_mask_labels(given)
     if not 1 <= given.tiles <= MOST_TILES:
         raise Failure(f"--tiles {given.tiles}: must be from 1 to {MOST_TILES}")
     check_tiles(given)

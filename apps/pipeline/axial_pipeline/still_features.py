@@ -197,9 +197,9 @@ def features_in(connection, image):
 
 def find(database):
     """(width, height, features at rest) of the camera with the most of them. Nothing if there are too
-    few, or if `database` is not one of COLMAP."""
-    found = []
-    with contextlib.suppress(sqlite3.Error), contextlib.closing(sqlite3.connect(database)) as connection:
+    few, or if `database` is not one of COLMAP or is damaged."""
+    found, damage = [], (sqlite3.Error, LookupError, TypeError, ValueError)
+    with contextlib.suppress(*damage), contextlib.closing(sqlite3.connect(database)) as connection:
         for width, height, images in cameras_in(connection):
             sample = [features_in(connection, image) for image in sample_of(images, SAMPLE)]
             found.append((width, height, at_rest(sample, width)))
@@ -210,7 +210,7 @@ def find(database):
 def lines_about(out):
     """What look() found for the run in the folder `out`, as lines for the user."""
     found = files.read_object(pathlib.Path(out) / FOUND)
-    with contextlib.suppress(KeyError, TypeError, ValueError):
+    with contextlib.suppress(LookupError, TypeError, ValueError):
         lines = ["{} features stand still in the photographs, like a strobe arm or a watermark. Poses may "
                  "follow them instead of the scene.".format(found["features"])]
         for region in found["regions"]:
