@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "geometry/vertex_normals.h"
 #include "scene/any_camera.h"
 
 namespace axial::geometry {
@@ -24,18 +25,6 @@ struct Triangle {
   }
   Eigen::Vector3d middle() const { return at.rowwise().mean(); }
 };
-
-// Unit normals of the vertices, weighted by the areas of the faces; zero without a normal.
-std::vector<Eigen::Vector3f> vertex_normals(const Mesh& mesh) {
-  std::vector<Eigen::Vector3f> normals(mesh.vertices.size(), Eigen::Vector3f::Zero());
-  for (const auto& [a, b, c] : mesh.faces) {
-    const Eigen::Vector3f normal =
-        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
-    for (const std::uint32_t corner : {a, b, c}) normals[corner] += normal;
-  }
-  for (Eigen::Vector3f& normal : normals) normal.normalize();
-  return normals;
-}
 
 void count(std::uint16_t& number) {
   if (number < std::numeric_limits<std::uint16_t>::max()) ++number;

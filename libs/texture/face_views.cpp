@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "geometry/vertex_normals.h"
 #include "scene/bilinear.h"
 
 namespace axial::texture {
@@ -21,18 +22,6 @@ struct SeenFace {
   std::array<std::uint8_t, 3> color;
   bool whole;
 };
-
-// Area-weighted unit normals of the vertices.
-std::vector<Eigen::Vector3f> vertex_normals(const Mesh& mesh) {
-  std::vector<Eigen::Vector3f> normals(mesh.vertices.size(), Eigen::Vector3f::Zero());
-  for (const auto& [a, b, c] : mesh.faces) {
-    const Eigen::Vector3f normal =
-        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
-    for (const std::uint32_t corner : {a, b, c}) normals[corner] += normal;
-  }
-  for (Eigen::Vector3f& normal : normals) normal.normalize();
-  return normals;
-}
 
 // Counts unusable pixels in rectangles.
 class UnusablePixels {
@@ -348,7 +337,8 @@ void look(const Scenery& scenery, std::span<const View> views, const ImageSource
 
 }  // namespace
 
-Surroundings::Surroundings(const Mesh& mesh) : occluders(mesh), normals(vertex_normals(mesh)) {}
+Surroundings::Surroundings(const Mesh& mesh)
+    : occluders(mesh), normals(geometry::vertex_normals(mesh)) {}
 
 std::uint64_t bytes_of_surroundings(const Mesh& mesh) {
   // Normals, the occluders' copy of the vertices, and Embree's tree while it is built.
