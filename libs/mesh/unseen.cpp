@@ -106,14 +106,28 @@ float median_longest_edge(const Mesh& mesh) {
 // median one.
 constexpr float kLargestCosine = 0.3f;
 float least_cosine(float ratio) {
-  constexpr float kFrom = 2.5f, kSlope = 0.08f;
+  constexpr float kFrom = 4.0f, kSlope = 0.1f;
   return std::clamp(kSlope * (ratio - kFrom), 0.0f, kLargestCosine);
+}
+
+// Clears the marks of `unseen` in connected sets of marked faces without a face that `certain`
+// marks.
+void keep_without_certain(const FaceGraph& graph, std::span<const std::uint8_t> certain,
+                          std::vector<std::uint8_t>& unseen) {
+  std::vector<std::uint8_t> left(unseen.size(), 0);
+  for_each_component(
+      graph, unseen.size(), [&](std::uint32_t f) { return unseen[f] == 1; },
+      [&](std::span<const std::uint32_t> component) {
+        if (std::ranges::any_of(component, [&](std::uint32_t f) { return certain[f] == 1; }))
+          for (const std::uint32_t f : component) left[f] = 1;
+      });
+  unseen = std::move(left);
 }
 
 // Clears the marks of small sets of faces inside the seen surface. `limit`: of the diagonals of
 // their bounding boxes.
-void keep_small_holes(const Mesh& mesh, float limit, std::vector<std::uint8_t>& unseen) {
-  const FaceGraph graph(mesh);
+void keep_small_holes(const Mesh& mesh, const FaceGraph& graph, float limit,
+                      std::vector<std::uint8_t>& unseen) {
   std::vector<std::uint8_t> kept = unseen;
   for_each_component(
       graph, unseen.size(), [&](std::uint32_t f) { return unseen[f] == 1; },
@@ -298,11 +312,16 @@ std::vector<std::uint8_t> unseen_faces(const Mesh& mesh,
   const std::vector<float> cosines =
       geometry::second_cosines(mesh, cameras, kLargestCosine, {}, progress);
   const float median = median_longest_edge(mesh);
-  std::vector<std::uint8_t> unseen(mesh.faces.size());
-  for (std::size_t f = 0; f < unseen.size(); ++f)
-    unseen[f] = !(cosines[f] > 0 && (!options.large_faces ||
-                                     cosines[f] >= least_cosine(longest_edge(mesh, f) / median)));
-  keep_small_holes(mesh, static_cast<float>(options.small_holes) * median, unseen);
+  std::vector<std::uint8_t> certain(mesh.faces.size()), unseen(mesh.faces.size());
+  for (std::size_t f = 0; f < unseen.size(); ++f) {
+    certain[f] = !(cosines[f] > 0);
+    const bool oblique =
+        options.large_faces && cosines[f] < least_cosine(longest_edge(mesh, f) / median);
+    unseen[f] = certain[f] || oblique;
+  }
+  const FaceGraph graph(mesh);
+  keep_without_certain(graph, certain, unseen);
+  keep_small_holes(mesh, graph, static_cast<float>(options.small_holes) * median, unseen);
   return unseen;
 }
 

@@ -26,13 +26,18 @@ struct UnseenOptions {
 };
 
 // Returns Mesh::unseen of `mesh`: 1 for the faces whose place no two cameras have seen, 0 for the
-// others. A face is unseen unless two cameras see its middle from the front, at an angle whose
-// cosine is at least c (geometry::second_cosines). Let r be the longest edge of the face divided by
-// the median longest edge of all faces. c is 0.08 (r - 2.5), at least 0 and at most 0.3, or 0 if
-// `large_faces` is false, for meshes whose faces say nothing about points (decimated ones). The
-// reason for c: the surface that closes an unseen place often lies along the last rays that pass
-// it, so that cameras do see its front, but at grazing angles; and it has large faces, because
-// there are no points inside.
+// others. There are two kinds of unseen faces:
+//   1. No two cameras see the middle of the face from the front (geometry::second_cosines).
+//   2. Two cameras see it, but only at a grazing angle, the face is large, and a chain of faces of
+//      this kind, each with a common edge with the next, connects it to a face of the first kind.
+//      Let r be the longest edge of the face divided by the median longest edge of all faces. The
+//      angle is grazing if the second largest cosine of the angle between the face's normal and
+//      the ray of a camera is below 0.1 (r - 4), at most 0.3. If `large_faces` is false, for
+//      meshes whose faces say nothing about points (decimated ones), there is no second kind.
+// The reason for the second kind: the surface that closes an unseen place often begins along the
+// last rays that pass the place, so that cameras do see its front, but at grazing angles. It has
+// large faces, because there are no points inside. Large faces that are not connected to unseen
+// ones are true surface with little texture.
 //
 // Exception: unseen faces inside the seen surface count as seen if they form a set whose bounding
 // box has a diagonal of at most `small_holes` median longest edges. `progress`: numbers of cameras.

@@ -11,13 +11,16 @@ from points import BASE, densified, point
 from support import runs
 from support.runs import BIN, PROGRAMS, measured
 
-SEEDS = (41, 42, 43)
-UNSEEN, LESS_RECALL = 0.02, 0.005
+SEEDS = (42, 43, 44)  # the rule of mesh/unseen.h was tuned on seed 41
+# Small images and a coarse truth, so that the point takes about ten minutes of processor time.
+SIMULATED = ("--preset", "amphora", "--width", 640, "--height", 480, "--samples", 2,
+             "--coarseness", 2, "--truth", 0)
+UNSEEN, LESS_RECALL, ROUNDING = 0.02, 0.005, 0.0005
 
 
 def made(work, seed, medium):
     """The folder of a scene's meshes: refined.ply, and closed-refined.ply with marks."""
-    truth = runs.simulated(f"amphora-{seed}", BASE, "--preset", "amphora", "--seed", seed)
+    truth = runs.simulated(f"amphora-{seed}", BASE, *SIMULATED, "--seed", seed)
     folder = work / f"amphora-{seed}-{medium}-unseen"
     refractive = ["--refractive"] if truth.housing(medium) else []
     densified(folder, truth.data / "sparse", truth.data / medium, truth.housing(medium),
@@ -43,6 +46,8 @@ def against_itself(mesh, truth, medium):
 
 
 def result(work, seed, medium):
+    """For both meshes: scores at the places that two views see, the shares of the area at places that
+    no view and one view sees, and the share that no view sees past the mesh ("hidden")."""
     folder, truth = made(work, seed, medium)
     found = {}
     for name in ("refined", "closed-refined"):
@@ -57,7 +62,7 @@ def result(work, seed, medium):
 @point("surface of the preset amphora where no camera sees the truth, and surface that no camera "
        f"sees past the mesh: at most {UNSEEN:.0%} each of the refined mesh, medians of three seeds; "
        f"recall of places that two views see at most {100 * LESS_RECALL} points below that with "
-       "--close-unseen, F no lower")
+       f"--close-unseen, F no lower up to {ROUNDING}")
 def unseen_surface(work):
     seen, good = [], True
     for medium in ("air", "water"):
@@ -72,5 +77,5 @@ def unseen_surface(work):
         seen.append(f"{medium}: {'; '.join(texts)}; recall lost {lost:.4f}")
         good &= (value["refined", "no_view"] <= UNSEEN and value["refined", "hidden"] <= UNSEEN
                  and lost <= LESS_RECALL
-                 and value["refined", "f"] >= value["closed-refined", "f"])
+                 and value["refined", "f"] >= value["closed-refined", "f"] - ROUNDING)
     return "; ".join(seen), good

@@ -132,31 +132,40 @@ TEST(Unseen, SmallHolesAreNotMade) {
   EXPECT_EQ(count(unseen_faces(mesh, cameras, holes(8))), 0u);
 }
 
-// The surface that closes an unseen place often lies along the last rays, and has large faces.
-TEST(Unseen, LargeFacesMustBeSeenAtASteeperAngle) {
-  for (const bool large : {false, true}) {
-    Mesh mesh = plate(60, 0, 1);
-    const std::size_t level = mesh.faces.size();
-    // A wall behind the plate whose front is turned to the cameras, 80 degrees from facing them.
-    Mesh wall = plate(large ? 2 : 20, 0, 0);
-    for (Eigen::Vector3f& v : wall.vertices) {
-      const float along = v.y() * (large ? 10.0f : 1.0f);
-      v = {0.8f + v.x() * (large ? 10.0f : 1.0f) * 0.17f, along,
-           1 - v.x() * (large ? 10.0f : 1.0f) * 0.98f};
-    }
-    append(mesh, wall);
-    std::vector<geometry::PosedCamera> cameras = cameras_at({0.7, 0.72}, false);
-    const auto unseen = unseen_faces(mesh, cameras, holes(0));
-    const std::size_t marked =
-        count({unseen.begin() + static_cast<std::ptrdiff_t>(level), unseen.end()});
-    if (large)
-      EXPECT_EQ(marked, wall.faces.size());
+// A wall of the size 0.2 behind the plate of 60 x 60, of faces as large as those of the plate or
+// ten times as large. The cameras see its front at 73 degrees or more from its normal. If `folded`
+// is true, its far half is turned away from the cameras.
+Mesh wall_of(bool large, bool folded) {
+  Mesh wall = plate(large ? 2 : 20, 0, 0);
+  const float size = large ? 10.0f : 1.0f;
+  for (Eigen::Vector3f& v : wall.vertices) {
+    const float u = size * v.x(), y = size * v.y();
+    if (folded && u < 0)
+      v = {0.8f - 0.4f * u, y, 1 - 0.92f * u};
     else
-      EXPECT_EQ(marked, 0u);
-    UnseenOptions decimated = holes(0);
-    decimated.large_faces = false;
-    EXPECT_EQ(count(unseen_faces(wall, cameras, decimated)), 0u);
+      v = {0.8f + 0.17f * u, y, 1 - 0.98f * u};
   }
+  return wall;
+}
+
+// The surface that closes an unseen place often begins along the last rays, and has large faces.
+TEST(Unseen, LargeFacesBesideUnseenOnesMustBeSeenAtASteeperAngle) {
+  const std::vector<geometry::PosedCamera> cameras = cameras_at({0.7, 0.72}, false);
+  const Mesh level = plate(60, 0, 1);
+  const auto marked = [&](const Mesh& wall, bool large_faces) {
+    Mesh mesh = level;
+    append(mesh, wall);
+    UnseenOptions options = holes(0);
+    options.large_faces = large_faces;
+    const auto unseen = unseen_faces(mesh, cameras, options);
+    return count({unseen.begin() + static_cast<std::ptrdiff_t>(level.faces.size()), unseen.end()});
+  };
+  const Mesh large = wall_of(true, true), fine = wall_of(false, true);
+  EXPECT_EQ(marked(large, true), large.faces.size());
+  EXPECT_EQ(marked(large, false), large.faces.size() / 2) << "sizes that say nothing";
+  EXPECT_EQ(marked(fine, true), fine.faces.size() / 2) << "points prove the near half";
+  EXPECT_EQ(marked(wall_of(true, false), true), 0u) << "true surface with little texture";
+  EXPECT_EQ(marked(wall_of(false, false), true), 0u);
 }
 
 TEST(Unseen, PiecesThatAreCutOffAreRemoved) {
