@@ -104,9 +104,9 @@ float median_longest_edge(const Mesh& mesh) {
 
 // The least cosine at which two cameras must see a face whose longest edge is `ratio` times the
 // median one.
-constexpr float kLargestCosine = 0.3f;
+constexpr float kLargestCosine = 0.4f;
 float least_cosine(float ratio) {
-  constexpr float kFrom = 4.0f, kSlope = 0.1f;
+  constexpr float kFrom = 3.0f, kSlope = 0.2f;
   return std::clamp(kSlope * (ratio - kFrom), 0.0f, kLargestCosine);
 }
 

@@ -32,7 +32,7 @@ struct UnseenOptions {
 //      this kind, each with a common edge with the next, connects it to a face of the first kind.
 //      Let r be the longest edge of the face divided by the median longest edge of all faces. The
 //      angle is grazing if the second largest cosine of the angle between the face's normal and
-//      the ray of a camera is below 0.1 (r - 4), at most 0.3. If `large_faces` is false, for
+//      the ray of a camera is below 0.2 (r - 3), at most 0.4. If `large_faces` is false, for
 //      meshes whose faces say nothing about points (decimated ones), there is no second kind.
 // The reason for the second kind: the surface that closes an unseen place often begins along the
 // last rays that pass the place, so that cameras do see its front, but at grazing angles. It has
