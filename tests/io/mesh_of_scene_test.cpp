@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/openmvs/mesh_of_scene.h"
+
+#include <gmock/gmock.h>
+
+#include <cstdint>
+
+#include "base/log.h"
+#include "io/obj/mesh_file.h"
+#include "io/openmvs/point_source.h"
+#include "io/textured/textured_mesh.h"
+#include "io/wrong_input.h"
+
+namespace axial::io {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const LocalFrame kOffset{{534000, 3378500, 0}};
+
+class MeshOfScene : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override { folder_ = test::empty_folder(); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  // Writes a triangle at `at`, with the offset of `frame` unless it is the world.
+  fs::path written(const Eigen::Vector3f& at, const LocalFrame& frame = {}) {
+    Mesh mesh;
+    for (const Eigen::Vector3f& corner : {Eigen::Vector3f(0, 0, 0), {1, 0, 0}, {0, 1, 0}})
+      mesh.vertices.push_back(at + corner);
+    mesh.faces.push_back({0, 1, 2});
+    const fs::path file = folder_ / (std::string("mesh") + GetParam());
+    write_mesh(file, mesh, frame);
+    return file;
+  }
+
+  // Of read_mesh_of_scene(). That of read_textured_mesh_of_scene() is the same. It refuses a PLY
+  // without textures.
+  static Eigen::Vector3f first_vertex(const fs::path& file) {
+    const Eigen::Vector3f first = read_mesh_of_scene(kOffset, file).vertices.front();
+    if (file.extension() != ".ply") {
+      const LogCapture log;
+      EXPECT_EQ(read_textured_mesh_of_scene(kOffset, file).mesh.vertices.front(), first);
+    }
+    return first;
+  }
+
+  fs::path folder_;
+};
+
+TEST_P(MeshOfScene, LocalPositionsWithoutAnOffsetStayAsTheyAre) {
+  const fs::path file = written({2, 3, 4});
+  EXPECT_TRUE(is_without_offset(kOffset, file));
+  const LogCapture log;
+  EXPECT_EQ(first_vertex(file), Eigen::Vector3f(2, 3, 4));
+  EXPECT_THAT(log.text(), HasSubstr("states no offset; its coordinates count from the scene's "
+                                    "offset 534000 3378500 0"));
+}
+
+// The floats of the file are exact here.
+TEST_P(MeshOfScene, WorldPositionsWithoutAnOffsetAreMovedToTheFrame) {
+  const fs::path file = written({534002, 3378503, 4});
+  EXPECT_FALSE(is_without_offset(kOffset, file));
+  const LogCapture log;
+  EXPECT_EQ(first_vertex(file), Eigen::Vector3f(2, 3, 4));
+  EXPECT_EQ(log.text(), "");
+}
+
+TEST_P(MeshOfScene, AnOffsetThatIsStatedCounts) {
+  const fs::path file = written({2, 3, 4}, LocalFrame{{534010, 3378500, 0}});
+  EXPECT_FALSE(is_without_offset(kOffset, file));
+  EXPECT_EQ(first_vertex(file), Eigen::Vector3f(12, 3, 4));
+}
+
+TEST_P(MeshOfScene, NothingIsLostInTheWorld) {
+  EXPECT_FALSE(is_without_offset({}, written({2, 3, 4})));
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, MeshOfScene, testing::Values(".ply", ".obj", ".glb"),
+                         [](const auto& info) { return std::string(info.param + 1); });
+
+TEST(MeshOfSceneFile, ErrorsNameTheFile) {
+  EXPECT_THAT(test::error_of([] { is_without_offset(kOffset, "/no such/mesh.ply"); }),
+              HasSubstr("/no such/mesh.ply"));
+}
+
+}  // namespace
+}  // namespace axial::io
