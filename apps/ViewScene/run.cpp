@@ -13,8 +13,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // The text in which absolute paths are replaced by their last names: a page may be published, and
-// the folders of a computer can contain the name of its user. A path begins at a slash at the beginning
-// of the text or behind one of `before`, and ends before one of `ends`.
+// the folders of a computer can contain the name of its user. A path begins at a slash at the
+// beginning of the text or behind one of `before`, and ends before one of `ends`.
 std::string without_folders(const std::string& text, std::string_view before,
                             std::string_view ends) {
   std::string result;

@@ -95,8 +95,9 @@ class Export(Scene):
         self.refuses("images.bin", *command)
 
     def test_run_from_another_folder(self):
-        """Relative image paths start at the working folder. The message names the folder of the
-        images, and if images are missing, also the working folder and -w."""
+        """Relative image paths start at the working folder, or at the folder of the scene if it has
+        images. The message names the folder of the images, and if images are missing, also the
+        working folder and -w."""
         folder = self.copy("air")
         for name in ("0000.jpg", "0001.jpg"):
             os.makedirs(os.path.join(folder, "there"), exist_ok=True)
@@ -105,14 +106,14 @@ class Export(Scene):
         scene = read(os.path.join(folder, "scene.mvs"))
         for place, found in (("../closeup/air", 5), ("there", 2), ("nowhere", 0)):
             write(os.path.join(folder, "scene.mvs"), with_image_folder(scene, place))
-            for start, missing in ((folder, 5 - found), (self.path("elsewhere"),
-                                                         0 if found == 5 else 5)):
+            missing = 5 - found
+            for start in (folder, self.path("elsewhere")):
                 with self.subTest(place=place, start=start):
                     said = self.succeeds("InterfaceCOLMAP", "-i",
                                          os.path.join(folder, "scene.mvs"), cwd=start).stdout
                     line = [text for text in said.splitlines() if "images below" in text]
                     self.assertEqual(len(line), 1, said)
-                    looked_in = os.path.normpath(os.path.join(start, place))
+                    looked_in = os.path.normpath(os.path.join(folder if 0 < found else start, place))
                     self.assertIn(f"5 images below {looked_in}", line[0])
                     self.assertEqual(f"{missing} of them do not exist" in line[0], missing > 0)
                     self.assertEqual(f"working folder, {start}, which -w sets" in line[0],

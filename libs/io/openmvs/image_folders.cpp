@@ -50,9 +50,10 @@ std::string ImageFolders::find(const fs::path& name) {
     if (!is_told_)
       log_info("{}: the paths of its images start at {}", scene_.string(), folder.string());
     is_told_ = true;
+    found_in_ = folder;
     return found.string();
   }
-  return usual.string();
+  return found_in_.empty() ? usual.string() : (found_in_ / part).lexically_normal().string();
 }
 
 }  // namespace axial::io
