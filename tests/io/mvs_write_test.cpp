@@ -76,6 +76,9 @@ TEST_F(MvsTest, StoresPathsBelowTheWorkingFolderRelatively) {
   write_mvs(file_, scene, folder_);
   const std::string bytes = read_file(file_);
   EXPECT_EQ(bytes.find(folder_.string()), std::string::npos);
+  // Photographs beside the scene are found from any working folder.
+  EXPECT_EQ(read_mvs(file_, "/other").images[0].path, (folder_ / "images/a.png").string());
+  std::filesystem::remove(folder_ / "images/a.png");
   const Scene moved = read_mvs(file_, "/other");
   EXPECT_EQ(moved.images[0].path, "/other/images/a.png");
   EXPECT_EQ(moved.images[1].path, "/elsewhere/b.png");
