@@ -3,9 +3,10 @@
 // are and its cameras look.
 //
 // Measured on correct scenes of all presets and cameras, meshes and clouds have a SurfaceFit::
-// distance of at most 0.64 px, and so have meshes with a tenth of the faces. Exception: a real
-// scene of 3072 px, the fountain, has 1.85 px. The mesh of another seed of the same preset has 4 to
-// 7 px in images that are 320 px wide, and in proportion more in larger images.
+// distance of at most 0.64 px, and so have meshes with a tenth of the faces. Exception: the
+// photographs of a fountain have 1.85 px, where the limit is 3 px. The mesh of another seed of the
+// same preset has 4 to 7 px in images that are 320 px wide, and in proportion more in larger
+// images.
 #pragma once
 
 #include <filesystem>

@@ -75,7 +75,10 @@ class Shapes(Belonging):
             self.assertEqual(self.warnings(*command, "--max-threads", "1"), [], command)
 
     def test_the_mesh_of_another_survey_is_refused(self):
-        self.refuse_mesh("other/mesh.ply: does not belong to " + self.path("one", "scene.mvs"), self.other)
+        # One program, because the check tries all units and axes, which takes seconds. The test of
+        # millimetres runs all programs.
+        self.refuses("other/mesh.ply: does not belong to " + self.path("one", "scene.mvs"),
+                     *self.of_scene("MapSurface", "-m", self.other, "-o", "new"))
 
     def test_the_cloud_of_another_survey_is_refused(self):
         # The limit of a cloud is the distance between its points, so the cloud is denser than the mesh.
