@@ -25,6 +25,7 @@ import memory  # noqa: E402, F401
 import tiles  # noqa: E402, F401
 import survey_page  # noqa: E402, F401
 import still  # noqa: E402, F401
+import false_alarms  # noqa: E402, F401
 
 
 def source_state():

@@ -13,7 +13,7 @@ SCENES = {name: ("--preset", name) for name in PRESETS} | {
     "closeup-hazy": ("--preset", "closeup-hazy"),
     "dome": ("--preset", "closeup", "--dome-radius", 0.1, "--dome-z", 0.005),
     "fisheye": ("--preset", "closeup", "--lens", "OPENCV_FISHEYE,-0.02,0.004,0,0"),
-    "water-surface": ("--preset", "closeup", "--water-level", 0.35)}
+    "water-surface": ("--preset", "closeup", "--scale", 10, "--water-level", 4)}
 # Of libs/belong, geometry/seen_part.h, libs/compare/same_place.h and of the readers of photographs.
 ALARMS = re.compile(r"does not belong to|no camera of|inside out|turned away|stray|does not show the place"
                     r"|does not show what|is blank|are blank|smaller than their cameras|is used, although"
@@ -65,17 +65,11 @@ class Chain:
                                                      self.folder / f"{name}-page"))
 
 
-def made(work, name):
-    data = runs.simulated(f"small-{name}", BASE, *SCENES[name], *SMALL).data
-    return data
-
-
 def check_scene(work, name, alarms):
     """All programs on a scene in air and in water, and CompareSurveys between both."""
-    data, meshes = made(work, name), []
+    data = runs.simulated(f"small-{name}", BASE, *SCENES[name], *SMALL).data
+    meshes = []
     for medium in ("air", "water"):
-        if not (data / medium).exists():
-            continue
         chain = Chain(work / "no-false-alarms" / f"{name}-{medium}", data, medium, alarms)
         mesh, refined, few = chain.make_mesh()
         for used in (refined, few):
