@@ -13,11 +13,12 @@
 namespace axial::compare {
 namespace {
 
-constexpr int kCells = 40;            // along the longer side, at most
-constexpr double kAround = 0.1;       // of the longer side: the mean height around
-constexpr int kShifts = 12;           // along each side of the map
-constexpr std::size_t kFewest = 100;  // cells with both heights
-constexpr double kSame = 0.55, kOfRelief = 2.5, kLeastRelief = 0.1;
+constexpr int kCells = 60;             // along the longer side, at most
+constexpr double kAround = 0.07;       // of the longer side: the mean height around
+constexpr int kWindow = 6, kStep = 3;  // side of a window, and distance of the windows [cells]
+constexpr int kShifts = 12;            // along each side of the map
+constexpr std::size_t kFewest = 12;    // windows
+constexpr double kSame = 0.6, kOfRelief = 2.5, kLeastRelief = 0.2;
 
 // A map of cells, each of which is the mean of the heights in a square; NaN where less than half of
 // the square has a height.
@@ -67,36 +68,58 @@ cv::Mat1f relief_of(const cv::Mat1f& heights) {
   return relief;
 }
 
-struct Correlation {
-  double value = 0;
-  std::size_t pixels = 0;
+// The sums of a correlation.
+struct Sums {
+  double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+
+  void add(double p, double q) {
+    n += 1;
+    a += p;
+    b += q;
+    aa += p * p;
+    bb += q * q;
+    ab += p * q;
+  }
+  double correlation() const {
+    const double variances = (aa - a * a / n) * (bb - b * b / n);
+    return n > 0 && variances > 0 ? (ab - a * b / n) / std::sqrt(variances) : 0;
+  }
 };
 
-// The correlation of `a` with `b` shifted by (dx, dy); what is shifted beyond a side comes in at
-// the other side.
-Correlation correlation(const cv::Mat1f& a, const cv::Mat1f& b, int dx, int dy) {
-  double n = 0, sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
-  for (int y = 0; y < a.rows; ++y)
-    for (int x = 0; x < a.cols; ++x) {
+// The sums over a window of `a` and of `b` shifted by (dx, dy). The parts of `b` that are shifted
+// beyond a side come in at the other side.
+Sums sums_in(const cv::Mat1f& a, const cv::Mat1f& b, cv::Point shift, cv::Rect window) {
+  Sums sums;
+  for (int y = window.y; y < window.br().y; ++y)
+    for (int x = window.x; x < window.br().x; ++x) {
       const auto p = static_cast<double>(a(y, x));
-      const auto q = static_cast<double>(b((y + dy) % a.rows, (x + dx) % a.cols));
-      if (std::isnan(p) || std::isnan(q)) continue;
-      n += 1;
-      sa += p;
-      sb += q;
-      saa += p * p;
-      sbb += q * q;
-      sab += p * q;
+      const auto q = static_cast<double>(b((y + shift.y) % a.rows, (x + shift.x) % a.cols));
+      if (!std::isnan(p) && !std::isnan(q)) sums.add(p, q);
     }
-  const double variances = (saa - sa * sa / n) * (sbb - sb * sb / n);
-  if (!(n > 0) || !(variances > 0)) return {};
-  return {(sab - sa * sb / n) / std::sqrt(variances), static_cast<std::size_t>(n)};
+  return sums;
+}
+
+struct Correlation {
+  double value = 0;         // median of the windows
+  std::size_t windows = 0;  // of which at least half of the cells have both heights
+};
+
+// The correlation of `a` with `b` shifted as in sums_in().
+Correlation correlation(const cv::Mat1f& a, const cv::Mat1f& b, cv::Point shift) {
+  std::vector<double> values;
+  for (int y = 0; y + kWindow <= a.rows; y += kStep)
+    for (int x = 0; x + kWindow <= a.cols; x += kStep) {
+      const Sums sums = sums_in(a, b, shift, {x, y, kWindow, kWindow});
+      if (2 * sums.n >= kWindow * kWindow) values.push_back(sums.correlation());
+    }
+  const std::size_t windows = values.size();
+  return {windows > 0 ? median_of(values) : 0, windows};
 }
 
 // The correlation of a relief with itself one cell away; at least 0.
 double correlation_with_itself(const cv::Mat1f& relief) {
-  return std::max(0.0, std::min(correlation(relief, relief, 1, 0).value,
-                                correlation(relief, relief, 0, 1).value));
+  return std::max(0.0, std::min(correlation(relief, relief, {1, 0}).value,
+                                correlation(relief, relief, {0, 1}).value));
 }
 
 PlaceVerdict verdict_of(const PlaceAgreement& agreement) {
@@ -115,10 +138,10 @@ std::vector<double> chances(const cv::Mat1f& a, const cv::Mat1f& b, std::size_t 
     parallel_for(found.size(), [&](std::size_t k) {
       const int dx = static_cast<int>(k) % kShifts * a.cols / kShifts;
       const int dy = static_cast<int>(k) / kShifts * a.rows / kShifts;
-      if (way > 0 || k > 0) found[k] = correlation(a, other, dx, dy);
+      if (way > 0 || k > 0) found[k] = correlation(a, other, {dx, dy});
     });
     for (const Correlation& one : found)
-      if (one.pixels >= least) values.push_back(one.value);
+      if (one.windows >= least) values.push_back(one.value);
   }
   return values;
 }
@@ -135,9 +158,9 @@ PlaceAgreement agreement_of_places(const cv::Mat1f& before, const cv::Mat1f& aft
   a = relief_of(a);
   b = relief_of(b);
   PlaceAgreement result;
-  const Correlation here = correlation(a, b, 0, 0);
-  if (here.pixels < kFewest) return result;
-  std::vector<double> by_chance = chances(a, b, here.pixels / 4);
+  const Correlation here = correlation(a, b, {0, 0});
+  if (here.windows < kFewest) return result;
+  std::vector<double> by_chance = chances(a, b, here.windows / 4);
   if (by_chance.size() < 100) return result;
   std::ranges::sort(by_chance);
   result.correlation = here.value;
