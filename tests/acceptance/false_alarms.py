@@ -14,10 +14,11 @@ SCENES = {name: ("--preset", name) for name in PRESETS} | {
     "dome": ("--preset", "closeup", "--dome-radius", 0.1, "--dome-z", 0.005),
     "fisheye": ("--preset", "closeup", "--lens", "OPENCV_FISHEYE,-0.02,0.004,0,0"),
     "water-surface": ("--preset", "closeup", "--scale", 10, "--water-level", 4)}
-# Of libs/belong, geometry/seen_part.h, libs/compare/same_place.h and of the readers of photographs.
-ALARMS = re.compile(r"does not belong to|no camera of|inside out|turned away|stray|does not show the place"
-                    r"|does not show what|is blank|are blank|smaller than their cameras|is used, although"
-                    r"|are ignored|points away from|the cameras are below")
+# Of libs/belong, geometry/seen_part.h, libs/compare, DensifyPointCloud and the readers of photographs.
+ALARMS = re.compile(r"does not belong to|no camera of|no camera sees them|inside out|does not show the place"
+                    r"|does not show the ground|do not seem to show|is blank|are blank"
+                    r"|smaller than their cameras|is used, although|are ignored|points away from"
+                    r"|the cameras are below|are the scenes those of the meshes")
 
 
 class Chain:
