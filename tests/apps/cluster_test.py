@@ -229,8 +229,10 @@ class OnTwoNodes(Survey):
         for node in small_slurm.NODES:
             self.assertRegex(self.cluster.log("slurmctld"), f"( on |NodeList=){node}\\b")
         out = self.folder / "out"
-        for file in [*out.glob("*.dmap*"), *out.glob("steps/plan.*"), *out.glob("steps/depth-*"),
-                     *out.glob("steps/densify*"), *out.glob("scene_dense*")]:
+        # The records of begun steps stay: without them, the rest of the files would be the user's.
+        for file in [*out.glob("*.dmap*"), out / "steps" / "plan.json", *out.glob("steps/plan.done*"),
+                     *out.glob("steps/depth-*.done*"), *out.glob("steps/densify*.done*"),
+                     *out.glob("scene_dense*")]:
             file.unlink()
         process = self.start("out", *self.OPTIONS, "--until", "cloud")
         self.cluster.wait_for(self.node_of_part, 120)
