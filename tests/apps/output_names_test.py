@@ -59,7 +59,7 @@ class FilesOfTheScene(Wall):
         cloud = read(self.cloud)
         for program, suffix in (("ReconstructMesh", "_mesh"), ("RefineMesh", "_refine"),
                                 ("TextureMesh", "_texture")):
-            for output in ("scene.mvs", "scene", "../work/scene.mvs"):
+            for output in ("scene.mvs", "scene", f"../{os.path.basename(self.work)}/scene.mvs"):
                 with self.subTest(program=program, output=output):
                     made, said = self.new_files(*self.command(program, "-o", output))
                     self.assertIn(f"scene{suffix}.ply", made)
