@@ -15,6 +15,7 @@
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
 #include "io/textured/textured_mesh.h"
+#include "mesh/point_distances.h"
 #include "mesh/unseen.h"
 #include "options.h"
 #include "scene/region.h"
@@ -72,18 +73,24 @@ Mesh clean_given(const io::SceneWithCameras& scene, const Options& options, bool
 }
 
 // Removes or marks the surface that no two cameras see.
-Mesh without_unseen(Mesh mesh, const Scene& scene, const Options& options, bool keep) {
+Mesh without_unseen(Mesh mesh, const io::SceneWithCameras& scene, const Options& options,
+                    bool keep) {
   memory_of(options).require(mesh::bytes_of_unseen(mesh),
                              "finding the surface that no two cameras see");
   const fs::path& source = options.mesh.empty() ? options.scene.scene : options.mesh;
   mesh::UnseenOptions unseen;
   unseen.keep = keep;
   const mesh::CleanOptions& clean = options.reconstruct.clean;
-  unseen.large_faces = options.mesh.empty() && clean.decimate == 1 && clean.target_faces == 0 &&
-                       clean.edge_length == 0;
+  unseen.sizes_tell = options.mesh.empty() && clean.decimate == 1 && clean.target_faces == 0 &&
+                      clean.edge_length == 0;
   unseen.cut_off = clean.cut_off;
+  std::vector<Eigen::Vector3f> points;
+  if (unseen.sizes_tell)
+    points =
+        mesh::some_positions(source_of(scene, options), mesh::enough_points(mesh.faces.size()));
+  unseen.points = points;
   return naming(source, [&] {
-    return mesh::treat_unseen(std::move(mesh), mesh::cameras_of(scene), unseen,
+    return mesh::treat_unseen(std::move(mesh), mesh::cameras_of(scene.scene), unseen,
                               console_progress("Looked"));
   });
 }
@@ -118,7 +125,7 @@ int run(int argc, char** argv) {
               : options.mesh.empty() ? reconstruct(scene, options)
                                      : clean_given(scene, options, keep);
   return_freed_memory();
-  mesh = without_unseen(std::move(mesh), scene.scene, options, keep);
+  mesh = without_unseen(std::move(mesh), scene, options, keep);
   write(options.output, mesh, scene.frame);
   remove_tiles(options);
   return 0;

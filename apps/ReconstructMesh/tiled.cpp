@@ -73,18 +73,6 @@ mesh::TileRun run_of(const Options& options) {
   return run;
 }
 
-mesh::CloudSource source_of(const io::SceneWithCameras& scene, const Options& options) {
-  return [&scene, file = cloud_file(options)](const io::CloudPortionSink& sink) {
-    if (file.empty()) {
-      PointCloud points = cloud_of(scene.scene);
-      const std::size_t count = points.size();
-      sink(std::move(points), count);
-    } else {
-      io::read_cloud_of_scene_in_portions(scene.frame, file, kPortion, sink);
-    }
-  };
-}
-
 // Errors in the cloud are named by its file, as those of a mesh in one piece.
 fs::path named_source(const Options& options) {
   const fs::path cloud = cloud_file(options);
@@ -98,6 +86,18 @@ fs::path cloud_file(const Options& options) {
   const fs::path beside = io::cloud_beside(options.scene.scene);
   std::error_code error;
   return fs::exists(beside, error) ? beside : fs::path();
+}
+
+mesh::CloudSource source_of(const io::SceneWithCameras& scene, const Options& options) {
+  return [&scene, file = cloud_file(options)](const io::CloudPortionSink& sink) {
+    if (file.empty()) {
+      PointCloud points = cloud_of(scene.scene);
+      const std::size_t count = points.size();
+      sink(std::move(points), count);
+    } else {
+      io::read_cloud_of_scene_in_portions(scene.frame, file, kPortion, sink);
+    }
+  };
 }
 
 void make_tile(const io::SceneWithCameras& scene, const Options& options) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "io/openmvs/scene_with_cameras.h"
+#include "mesh/cloud_source.h"
 #include "options.h"
 #include "scene/mesh.h"
 
@@ -13,6 +14,9 @@ namespace axial::apps {
 // The cloud to use. As in OpenMVS, the cloud beside the scene is taken if none is named. Empty: the
 // points of the scene.
 std::filesystem::path cloud_file(const Options& options);
+
+// Reads the cloud to use. `scene` and `options` must outlive the result.
+mesh::CloudSource source_of(const io::SceneWithCameras& scene, const Options& options);
 
 // Makes tile Options::tile, and writes its files into the folder <output>.tilesN.
 void make_tile(const io::SceneWithCameras& scene, const Options& options);

@@ -21,6 +21,8 @@
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
 #include "io/textured/textured_mesh.h"
+#include "mesh/cloud_source.h"
+#include "mesh/point_distances.h"
 #include "mesh/unseen.h"
 #include "options.h"
 #include "refine/state_file.h"
@@ -186,13 +188,29 @@ Mesh refine_mesh(Mesh mesh, const densify::Project& project, const Options& opti
   return std::move(state.mesh);
 }
 
+// Points of the cloud beside the scene, of which the mesh was made. Empty if there is no cloud.
+std::vector<Eigen::Vector3f> points_of(const densify::Project& project, const fs::path& scene,
+                                       std::size_t faces) {
+  constexpr std::size_t kPortion = 1 << 16;
+  const fs::path cloud = io::cloud_beside(scene);
+  std::error_code error;
+  if (!fs::is_regular_file(cloud, error) || io::ply_has_faces(cloud)) return {};
+  return mesh::some_positions(
+      [&](const io::CloudPortionSink& sink) {
+        io::read_cloud_of_scene_in_portions(project.frame, cloud, kPortion, sink);
+      },
+      mesh::enough_points(faces));
+}
+
 // Removes or marks the surface that no two cameras see.
-Mesh without_unseen(Mesh mesh, const densify::Project& project, bool keep) {
+Mesh without_unseen(Mesh mesh, const densify::Project& project, const fs::path& scene, bool keep) {
   std::vector<geometry::PosedCamera> cameras;
   for (const densify::View& view : project.views)
     if (view.camera.width > 0) cameras.push_back({view.camera, view.pose});
   mesh::UnseenOptions unseen;
   unseen.keep = keep;
+  const std::vector<Eigen::Vector3f> points = points_of(project, scene, mesh.faces.size());
+  unseen.points = points;
   return mesh::treat_unseen(std::move(mesh), cameras, unseen, console_progress("Looked"));
 }
 
@@ -216,11 +234,12 @@ int run(int argc, char** argv) {
   bool has_marks = false;
   Mesh mesh = read_mesh(options, project.frame, has_marks);
   belong::check_surface(project.scene, belong::shape_of(mesh), {options.mesh, options.scene.input});
+  points_of(project, options.scene.input, 1);  // a malformed cloud is an Error now, not after hours
   StateOfRun state(state_file(options));
   mesh = refine_mesh(std::move(mesh), project, options, state);
   return_freed_memory();
   mesh = naming(options.mesh, [&] {
-    return without_unseen(mesh::clean(mesh, options.cleaning), project,
+    return without_unseen(mesh::clean(mesh, options.cleaning), project, options.scene.input,
                           options.close_unseen || has_marks);
   });
   state.writing([&] { write(options.output, mesh, project.frame); });

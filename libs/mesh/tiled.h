@@ -5,16 +5,12 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <string>
 
-#include "io/ply/ply.h"
+#include "mesh/cloud_source.h"
 #include "mesh/reconstruct.h"
 
 namespace axial::mesh {
-
-// Reads a cloud and passes it to the sink, portion by portion. Each call passes the same points.
-using CloudSource = std::function<void(const io::CloudPortionSink& sink)>;
 
 struct TileRun {
   std::size_t tiles = 2;         // number of tiles, at least 1

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "mesh/point_distances.h"
 #include "scene/marked_faces.h"
 
 namespace axial::mesh {
@@ -93,21 +94,55 @@ float longest_edge(const Mesh& mesh, std::size_t face) {
   return std::max({(at[a] - at[b]).norm(), (at[b] - at[c]).norm(), (at[c] - at[a]).norm()});
 }
 
+// The upper median.
+float median_of(std::vector<float> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 float median_longest_edge(const Mesh& mesh) {
   std::vector<float> lengths;
   lengths.reserve(mesh.faces.size());
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) lengths.push_back(longest_edge(mesh, f));
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle;
+  return median_of(std::move(lengths));
 }
 
-// The least cosine at which two cameras must see a face whose longest edge is `ratio` times the
-// median one.
-constexpr float kLargestCosine = 0.4f;
+// The least cosine at which two cameras must see a face that points do not prove.
+constexpr float kLargestCosine = 0.5f;
+
+// The same for a face whose longest edge is `ratio` times the median one, if points are not known.
 float least_cosine(float ratio) {
-  constexpr float kFrom = 3.0f, kSlope = 0.2f;
-  return std::clamp(kSlope * (ratio - kFrom), 0.0f, kLargestCosine);
+  constexpr float kFrom = 3.0f, kSlope = 0.2f, kMost = 0.4f;
+  return std::clamp(kSlope * (ratio - kFrom), 0.0f, kMost);
+}
+
+// The cosine at which two cameras must see each face: more than this number for the first kind of
+// unseen faces and at least this number for the second kind; below 0: nothing is necessary.
+struct LeastCosines {
+  std::vector<float> first, second;
+};
+
+LeastCosines least_cosines(const Mesh& mesh, const UnseenOptions& options) {
+  constexpr float kFar = 7.0f, kProven = -2.0f;
+  LeastCosines least;
+  least.first.assign(mesh.faces.size(), 0.0f);
+  least.second = least.first;
+  if (!options.sizes_tell) return least;
+  if (options.points.empty()) {
+    const float median = median_longest_edge(mesh);
+    for (std::size_t f = 0; f < least.second.size(); ++f)
+      least.second[f] = least_cosine(longest_edge(mesh, f) / median);
+    return least;
+  }
+  const std::vector<float> distances = distances_to_points(mesh, options.points);
+  const float limit = kFar * median_of(distances);
+  for (std::size_t f = 0; f < distances.size(); ++f) {
+    const bool is_far = distances[f] > limit;
+    least.first[f] = is_far ? 0.0f : kProven;
+    least.second[f] = is_far ? kLargestCosine : kProven;
+  }
+  return least;
 }
 
 // Clears the marks of `unseen` in connected sets of marked faces without a face that `certain`
@@ -311,17 +346,18 @@ std::vector<std::uint8_t> unseen_faces(const Mesh& mesh,
                                        const UnseenOptions& options, const ProgressSink& progress) {
   const std::vector<float> cosines =
       geometry::second_cosines(mesh, cameras, kLargestCosine, {}, progress);
-  const float median = median_longest_edge(mesh);
   std::vector<std::uint8_t> certain(mesh.faces.size()), unseen(mesh.faces.size());
-  for (std::size_t f = 0; f < unseen.size(); ++f) {
-    certain[f] = !(cosines[f] > 0);
-    const bool oblique =
-        options.large_faces && cosines[f] < least_cosine(longest_edge(mesh, f) / median);
-    unseen[f] = certain[f] || oblique;
+  {
+    const LeastCosines least = least_cosines(mesh, options);
+    for (std::size_t f = 0; f < unseen.size(); ++f) {
+      certain[f] = !(cosines[f] > least.first[f]);
+      unseen[f] = certain[f] || cosines[f] < least.second[f];
+    }
   }
   const FaceGraph graph(mesh);
   keep_without_certain(graph, certain, unseen);
-  keep_small_holes(mesh, graph, static_cast<float>(options.small_holes) * median, unseen);
+  const float limit = static_cast<float>(options.small_holes) * median_longest_edge(mesh);
+  keep_small_holes(mesh, graph, limit, unseen);
   return unseen;
 }
 
@@ -364,7 +400,9 @@ std::uint64_t bytes_of_unseen(const Mesh& mesh) {
   // The graph; the components before and after, the parts of the origins, marks; then the rest.
   const std::uint64_t rest = mesh.vertices.size() * 17 + mesh.faces.size() * 13;
   const std::uint64_t removing = FaceGraph::bytes(mesh) + mesh.faces.size() * 14 + rest;
-  return std::max(geometry::bytes_of_cosines(mesh), removing);
+  const std::uint64_t cosines = mesh.faces.size() * sizeof(float);
+  const std::uint64_t proving = cosines + bytes_of_distances(mesh);
+  return std::max({geometry::bytes_of_cosines(mesh), proving, removing});
 }
 
 }  // namespace axial::mesh

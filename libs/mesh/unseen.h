@@ -3,6 +3,7 @@
 // the surface behind everything that hides something; cleaning closes holes.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,25 +20,37 @@ namespace axial::mesh {
 std::vector<geometry::PosedCamera> cameras_of(const Scene& scene);
 
 struct UnseenOptions {
-  bool keep = false;        // treat_unseen(): true: unseen faces are marked instead of removed
-  bool large_faces = true;  // unseen_faces(): large faces must be seen at a steeper angle
-  double small_holes = 5;   // of unseen_faces()
-  double cut_off = 20;      // of without_unseen()
+  bool keep = false;  // treat_unseen(): true: unseen faces are marked instead of removed
+  // unseen_faces(): whether the size of a face, and its distance to `points`, tell if the face was
+  // measured. False for decimated meshes.
+  bool sizes_tell = true;
+  // unseen_faces(): the points of which the mesh was made, in its frame, or every k-th of them, at
+  // most enough_points() (point_distances.h). Empty: not known. They must outlive the call.
+  std::span<const Eigen::Vector3f> points = {};
+  double small_holes = 5;  // of unseen_faces()
+  double cut_off = 20;     // of without_unseen()
 };
 
 // Returns Mesh::unseen of `mesh`: 1 for the faces whose place no two cameras have seen, 0 for the
 // others. There are two kinds of unseen faces:
-//   1. No two cameras see the middle of the face from the front (geometry::second_cosines).
-//   2. Two cameras see it, but only at a grazing angle, the face is large, and a chain of faces of
-//      this kind, each with a common edge with the next, connects it to a face of the first kind.
-//      Let r be the longest edge of the face divided by the median longest edge of all faces. The
-//      angle is grazing if the second largest cosine of the angle between the face's normal and
-//      the ray of a camera is below 0.2 (r - 3), at most 0.4. If `large_faces` is false, for
-//      meshes whose faces say nothing about points (decimated ones), there is no second kind.
-// The reason for the second kind: the surface that closes an unseen place often begins along the
-// last rays that pass the place, so that cameras do see its front, but at grazing angles. It has
-// large faces, because there are no points inside. Large faces that are not connected to unseen
-// ones are true surface with little texture.
+//   1. No two cameras see the middle of the face from the front (geometry::second_cosines). If
+//      `points` are known, the face is also far from them: the distance from its middle to the
+//      nearest point is more than seven times the median of this distance over all faces.
+//   2. Two cameras see it, but only at a grazing angle, and a chain of faces of this kind, each
+//      with a common edge with the next, connects it to a face of the first kind. The angle is
+//      grazing if the second largest cosine of the angle between the face's normal and the ray of a
+//      camera is below 0.5 for faces that are far from `points`. If `points` are not known, the
+//      cosine is below 0.2 (r - 3), at most 0.4, where r is the longest edge of the face divided by
+//      the median longest edge of all faces.
+// If `sizes_tell` is false, all faces that no two cameras see are unseen, and there is no second
+// kind.
+//
+// The reason for the distance: every point was measured by two cameras or more. A face near points
+// whose middle seems to be hidden is hidden by the noise of the mesh. The reason for the second
+// kind: the surface that closes an unseen place often begins along the last rays that pass the
+// place, so that cameras do see its front, but at grazing angles. It has large faces, because there
+// are no points inside. Large faces that are not connected to unseen ones are true surface with
+// little texture.
 //
 // Exception: unseen faces inside the seen surface count as seen if they form a set whose bounding
 // box has a diagonal of at most `small_holes` median longest edges. `progress`: numbers of cameras.

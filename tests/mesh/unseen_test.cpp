@@ -7,6 +7,7 @@
 #include <random>
 
 #include "base/parallel.h"
+#include "mesh/cloud_source.h"
 #include "support/error_of.h"
 #include "topology.h"
 
@@ -156,7 +157,7 @@ TEST(Unseen, LargeFacesBesideUnseenOnesMustBeSeenAtASteeperAngle) {
     Mesh mesh = level;
     append(mesh, wall);
     UnseenOptions options = holes(0);
-    options.large_faces = large_faces;
+    options.sizes_tell = large_faces;
     const auto unseen = unseen_faces(mesh, cameras, options);
     return count({unseen.begin() + static_cast<std::ptrdiff_t>(level.faces.size()), unseen.end()});
   };
@@ -166,6 +167,77 @@ TEST(Unseen, LargeFacesBesideUnseenOnesMustBeSeenAtASteeperAngle) {
   EXPECT_EQ(marked(fine, true), fine.faces.size() / 2) << "points prove the near half";
   EXPECT_EQ(marked(wall_of(true, false), true), 0u) << "true surface with little texture";
   EXPECT_EQ(marked(wall_of(false, false), true), 0u);
+}
+
+// All vertices are points: the noise of the mesh hides a face, not the lack of a measurement.
+TEST_P(Unseen, FacesNearPointsWereMeasured) {
+  Mesh mesh = plate(80, 0, 1);
+  append(mesh, plate(20, 0, 0.5f));
+  const auto cameras = cameras_at({-0.02, 0, 0.02}, GetParam());
+  UnseenOptions options = holes(0);
+  options.points = mesh.vertices;
+  EXPECT_EQ(count(unseen_faces(mesh, cameras, options)), 0u);
+  std::vector<Eigen::Vector3f> outside;
+  for (const Eigen::Vector3f& v : mesh.vertices)
+    if (v.z() < 0.9f || std::max(std::abs(v.x()), std::abs(v.y())) > 0.145f) outside.push_back(v);
+  options.points = outside;
+  const std::vector<std::uint8_t> unseen = unseen_faces(mesh, cameras, options);
+  // The middle of a face is 0.0047 from its nearest corner: the median distance.
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+    for (const std::uint32_t v : mesh.faces[f]) middle += mesh.vertices[v] / 3;
+    const float aside = std::max(std::abs(middle.x()), std::abs(middle.y()));
+    const bool hidden = middle.z() > 0.9f;
+    EXPECT_TRUE(unseen[f] == 1 || !hidden || aside > 0.15f - 8 * 0.0047f) << middle.transpose();
+    EXPECT_TRUE(unseen[f] == 0 || (hidden && aside < 0.15f - 6 * 0.0047f)) << middle.transpose();
+  }
+  options.sizes_tell = false;
+  EXPECT_EQ(unseen_faces(mesh, cameras, options), unseen_faces(mesh, cameras, holes(0)))
+      << "a decimated mesh says nothing about its points";
+}
+
+TEST(Unseen, GrazingFacesFarFromPointsAreUnseenBesideUnseenOnes) {
+  const std::vector<geometry::PosedCamera> cameras = cameras_at({0.7, 0.72}, false);
+  const Mesh level = plate(60, 0, 1), folded = wall_of(false, true), whole = wall_of(false, false);
+  const auto marked = [&](const Mesh& wall, auto&& is_point) {
+    Mesh mesh = level;
+    append(mesh, wall);
+    std::vector<Eigen::Vector3f> points = level.vertices;
+    std::ranges::copy_if(wall.vertices, std::back_inserter(points), is_point);
+    UnseenOptions options = holes(0);
+    options.points = points;
+    const auto unseen = unseen_faces(mesh, cameras, options);
+    return static_cast<double>(
+        count({unseen.begin() + static_cast<std::ptrdiff_t>(level.faces.size()), unseen.end()}));
+  };
+  const auto faces = static_cast<double>(folded.faces.size());
+  EXPECT_EQ(marked(folded, [](const auto&) { return false; }), faces);
+  EXPECT_EQ(marked(folded, [](const auto&) { return true; }), 0);
+  // The near half has points. So has the third of the far half that is next to it.
+  EXPECT_NEAR(marked(folded, [](const Eigen::Vector3f& v) { return v.z() < 1.001f; }), faces / 3,
+              faces / 20);
+  EXPECT_EQ(marked(whole, [](const auto&) { return false; }), 0) << "surface with little texture";
+}
+
+TEST(Unseen, EveryKthPointIsTaken) {
+  for (const std::size_t all : {1u, 99u, 100u, 101u, 1000u, 1001u})
+    for (const std::size_t portion : {1u, 7u, 5000u}) {
+      const std::vector<Eigen::Vector3f> some = some_positions(
+          [&](const io::CloudPortionSink& sink) {
+            for (std::size_t begin = 0; begin < all; begin += portion) {
+              PointCloud cloud;
+              for (std::size_t i = begin; i < std::min(all, begin + portion); ++i)
+                cloud.positions.emplace_back(static_cast<float>(i), 0, 0);
+              sink(std::move(cloud), all);
+            }
+          },
+          100);
+      const std::size_t step = (all + 99) / 100;
+      ASSERT_EQ(some.size(), (all + step - 1) / step) << all << " in portions of " << portion;
+      EXPECT_LE(some.size(), 100u);
+      for (std::size_t i = 0; i < some.size(); ++i)
+        EXPECT_EQ(some[i].x(), static_cast<float>(i * step));
+    }
 }
 
 TEST(Unseen, PiecesThatAreCutOffAreRemoved) {
