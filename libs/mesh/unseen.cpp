@@ -124,7 +124,7 @@ struct LeastCosines {
 };
 
 LeastCosines least_cosines(const Mesh& mesh, const UnseenOptions& options) {
-  constexpr float kFar = 7.0f, kProven = -2.0f;
+  constexpr float kFar = 9.0f, kFirst = 0.25f, kProven = -2.0f;
   LeastCosines least;
   least.first.assign(mesh.faces.size(), 0.0f);
   least.second = least.first;
@@ -139,7 +139,7 @@ LeastCosines least_cosines(const Mesh& mesh, const UnseenOptions& options) {
   const float limit = kFar * median_of(distances);
   for (std::size_t f = 0; f < distances.size(); ++f) {
     const bool is_far = distances[f] > limit;
-    least.first[f] = is_far ? 0.0f : kProven;
+    least.first[f] = is_far ? kFirst : kProven;
     least.second[f] = is_far ? kLargestCosine : kProven;
   }
   return least;

@@ -33,15 +33,17 @@ struct UnseenOptions {
 
 // Returns Mesh::unseen of `mesh`: 1 for the faces whose place no two cameras have seen, 0 for the
 // others. There are two kinds of unseen faces:
-//   1. No two cameras see the middle of the face from the front (geometry::second_cosines). If
-//      `points` are known, the face is also far from them: the distance from its middle to the
-//      nearest point is more than seven times the median of this distance over all faces.
+//   1. No two cameras see the middle of the face from the front (geometry::second_cosines).
 //   2. Two cameras see it, but only at a grazing angle, and a chain of faces of this kind, each
-//      with a common edge with the next, connects it to a face of the first kind. The angle is
-//      grazing if the second largest cosine of the angle between the face's normal and the ray of a
-//      camera is below 0.5 for faces that are far from `points`. If `points` are not known, the
-//      cosine is below 0.2 (r - 3), at most 0.4, where r is the longest edge of the face divided by
-//      the median longest edge of all faces.
+//      with a common edge with the next, connects it to a face of the first kind. Grazing: the
+//      second largest cosine of the angle between the face's normal and the ray of a camera is
+//      below 0.2 (r - 3), at most 0.4. r is the longest edge of the face divided by the median
+//      longest edge of all faces.
+// If `points` are known, they decide instead of the sizes. A face is far from them if the distance
+// from its middle to the nearest point is more than nine times the median of this distance over all
+// faces. Only faces that are far from the points are unseen:
+//   1. those with a cosine of at most 0.25, or that no two cameras see,
+//   2. those with a cosine below 0.5 that are connected to the first ones.
 // If `sizes_tell` is false, all faces that no two cameras see are unseen, and there is no second
 // kind.
 //
@@ -49,8 +51,7 @@ struct UnseenOptions {
 // whose middle seems to be hidden is hidden by the noise of the mesh. The reason for the second
 // kind: the surface that closes an unseen place often begins along the last rays that pass the
 // place, so that cameras do see its front, but at grazing angles. It has large faces, because there
-// are no points inside. Large faces that are not connected to unseen ones are true surface with
-// little texture.
+// are no points inside. Other large faces are true surface with little texture.
 //
 // Exception: unseen faces inside the seen surface count as seen if they form a set whose bounding
 // box has a diagonal of at most `small_holes` median longest edges. `progress`: numbers of cameras.
