@@ -226,9 +226,7 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
   const ThreadLimit threads(options.parsed.common.max_threads);
-  std::error_code ignored;
-  fs::create_directories(options.output.parent_path(), ignored);
-  const OutputLock lock(options.output);
+  const OutputLock lock = lock_output(options.output);
   const densify::Project project = densify::load_scene_and_headers(options.scene);
   check_outputs(options, project);
   bool has_marks = false;

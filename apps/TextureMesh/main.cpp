@@ -183,9 +183,7 @@ int run(int argc, char** argv) {
   share_one_heap();
   const Settings& settings = options.settings;
   const ThreadLimit limit(options.parsed.common.max_threads);
-  std::error_code ignored;
-  fs::create_directories(settings.output.parent_path(), ignored);
-  const OutputLock lock(settings.output);
+  const OutputLock lock = lock_output(settings.output);
   if (const auto counts = io::count_mvs(settings.scene.scene))
     memory_of(settings).require(counts->reading_bytes(),
                                 "reading " + settings.scene.scene.string());

@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "base/log.h"
+#include "base/output_lock.h"
 #include "base/output_name.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
@@ -270,6 +271,9 @@ int run(int argc, char** argv) {
   const ThreadLimit threads(options.parsed.common.max_threads);
   const Files files = files_of(options);
   check_outputs(options, files);
+  std::optional<OutputLock> lock;
+  const bool writes = !outputs_of(options, files).empty();
+  if (writes) lock.emplace(options.output);
   io::SceneWithCameras scene = io::read_scene_with_cameras(options.files);
   keep_images(options, files, scene.scene);
   for (const MovedPly& ply : files.plys) warn_of_foreign_points(options, scene, ply.input);

@@ -13,7 +13,7 @@ import time
 
 from openmvs_chain_test import Glb
 from openmvs_scene import ascii_ply
-from programs import BIN, contents, files_below, main, read, write
+from programs import BIN, contents, files_below, grey_png, main, read, write
 from texture_mesh_test import mesh_ply, wall
 from tiny_scene import DENSIFY, TinyScene, mvs
 from transform_case import SHIFT, matrix_text, moved
@@ -385,6 +385,26 @@ class Rivals(Wall):
             self.refuses_and_keeps(f"{output}: {who}", *self.command(program))
             lock.close()
             self.succeeds(*self.command(program))  # the file alone is no lock
+            self.assertNotIn(output + ".lock", files_below(self.work))
+        masks = ("InterfaceCOLMAP", "-i", self.path("colmap", "images"), "-w", self.work,
+                 "--mask-path", self.path("mask.png"), "-o", "masks/")
+        write(self.path("mask.png"), grey_png([bytes(96)] * 72))
+        for output, command in (
+                ("map.dem.tif", self.command("MapSurface", "-o", "map", "--gsd", "0.02")),
+                ("surveys.change.difference.tif",
+                 ("CompareSurveys", "-i", "mesh.ply", "--other", "mesh.ply", "-w", self.work, "-o",
+                  "surveys")),
+                ("page", self.command("ViewScene", "--report", "page/")),
+                ("moved.mvs", self.command("TransformScene", "-t", "t.txt", "-o", "moved")),
+                ("some.mvs", self.command("TransformScene", "--sample-mesh", "-5", "-o", "some")),
+                ("made.mvs", ("InterfaceCOLMAP", "-i", self.path("colmap"), "-w", self.work, "-o",
+                              "made")),
+                ("sparse", ("InterfaceCOLMAP", "-i", "scene.mvs", "-w", self.work)),
+                ("masks", masks)):
+            lock = self.held(output, fcntl.LOCK_EX)
+            self.refuses_and_keeps(f"{output}: {who}", *command)
+            lock.close()
+            self.succeeds(*command)
             self.assertNotIn(output + ".lock", files_below(self.work))
         densify = (*DENSIFY, "-i", "scene.mvs", "-w", self.work)
         lock = self.held("scene_dense.mvs", fcntl.LOCK_EX)
