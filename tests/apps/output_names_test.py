@@ -246,7 +246,20 @@ class OptionsOfOpenMvs(Wall):
         self.succeeds(*self.command("TextureMesh", "-o", "textured"))
         made, _ = self.new_files(*self.command("TransformScene", "-t", "t.txt", "-o", "new",
                                                "--export-type", "gltf", mesh="textured.ply"))
-        self.assertEqual(made, {"new.mvs", "new_mesh.gltf", "new_mesh.bin", "new_mesh0.png"})
+        self.assertEqual(made, {"new.mvs", "new_mesh.gltf", "new_mesh.bin", "new_mesh_gltf0.png"})
+        made, said = self.new_files(*self.command("TransformScene", "-o", "only.2024", "--export-type",
+                                                  "glb", mesh="textured.ply"))
+        self.assertEqual(made, {"only.2024_mesh.glb"})
+        self.assertIn("only.2024_mesh.glb: converted mesh", said)
+        self.assertEqual(len(Glb(self.at("only.2024_mesh.glb")).json["images"]), 1)
+        made, _ = self.new_files(*self.command("TransformScene", "-o", "copy", "--export-type", "ply"))
+        self.assertEqual(made, {"copy_mesh.ply"})
+        head, body = self.at("copy_mesh.ply").split(b"end_header\n", 1)
+        for i, vertex in enumerate(wall()[0]):
+            for value, expected in zip(struct.unpack_from("<3f", body, 12 * i), vertex, strict=True):
+                self.assertAlmostEqual(value, expected, 6)
+        self.refuses_and_keeps("nothing to do", *self.command("TransformScene", "--export-type", "glb",
+                                                              mesh=None))
         self.refuses_and_keeps("has no textures", *self.command(
             "TransformScene", "-t", "t.txt", "-o", "last", "--export-type", "gltf"))
 

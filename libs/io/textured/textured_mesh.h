@@ -26,8 +26,10 @@ std::optional<TexturedFormat> textured_format(std::string_view name);
 // textures. The first path is that of the mesh. The extension of `path`, if it has one, is replaced
 // by the extension of the format. The second path is the .mtl file of an OBJ or the .bin file of a
 // glTF. The paths of the textures follow: for "dir/scene.ply" they are "dir/scene0.png",
-// "dir/scene1.png" and so on, as in OpenMVS. A GLB is a single file that contains its textures: the
-// result has one path.
+// "dir/scene1.png" and so on, as in OpenMVS, for an OBJ "dir/scene_material_0_map_Kd.png" and so
+// on, and for a glTF "dir/scene_gltf0.png" and so on. So the files of one format never replace
+// those of another format. A GLB is a single file that contains its textures: the result has one
+// path.
 std::vector<std::filesystem::path> textured_files(const std::filesystem::path& path,
                                                   TexturedFormat format, std::size_t textures);
 
