@@ -77,6 +77,10 @@ std::uint64_t bytes_to_write_textured(TexturedFormat format, std::uint64_t verti
 // (PLY: the edge of the texture; OBJ: repeated, or the edge with -clamp; glTF: the sampler). A face
 // that extends over several copies of its picture gets a texture with these copies, up to 2^26
 // pixels in all. Errors name the file.
+//
+// The names of pictures, MTL files and buffers start at the folder of the file that has the names.
+// Absolute names and names with ".." are read, too, because people keep textures in other folders.
+// Nothing is written to these places. Error for a name with a NUL byte.
 
 // A PLY has its textures in comments TextureFile, and coordinates at the corners of faces (the list
 // texcoord, and texnumber for the number of the texture) or at vertices (texture_u and texture_v, u
