@@ -167,8 +167,7 @@ Report reconstruct(const Settings& settings, const SceneObserver& observer) {
         "interest exclude all points",
         settings.fusion.min_views, settings.name_of("fusion.min_views"));
   export_pinholes(project, settings, plan, existing, ply);
-  for (const fs::path& file : settings.fuse ? tile_outputs(settings) : std::vector<fs::path>())
-    fs::remove(file);
+  if (settings.fuse) remove_tiles(settings);
   if (settings.remove_dmaps && settings.fuse) remove_depth_maps(project, settings);
   return {settings.fuse ? Result::dense_cloud : Result::sparse_cloud, ply, points,
           project.references.size(), all_pinholes(project)};

@@ -348,6 +348,21 @@ class Stale(Wall):
             *self.command("TextureMesh", "-o", "other", "--tiles", "2")).stdout)
         self.assertEqual(self.at("scene_texture.tile1-9.ply"), b"old")
 
+    def test_tiles_of_a_cloud_are_removed(self):
+        densify = (*DENSIFY, "-i", "scene.mvs", "-w", self.work)
+        self.succeeds(*densify, "--fusion-mode", "1")
+        for tile in ("1/2", "2/2", "1/3"):
+            self.succeeds(*densify, "--tile", tile)
+        changed = self.path("work", "scene_dense.tile2-2.ply")
+        write(changed, read(changed) + b" ")
+        tiles = lambda: {name for name in files_below(self.work) if ".tile" in name}
+        self.assertEqual(len(tiles()), 6)
+        said = self.succeeds(*densify, "--fusion-tiles", "4").stdout
+        self.assertEqual(tiles(), {"scene_dense.tile2-2.ply", "scene_dense.tile2-2.ply.json"})
+        self.assertIn(f"warning: {changed}: of another number of tiles", said)
+        os.remove(changed)
+        self.assertNotIn("of another number", self.succeeds(*densify).stdout)
+
     def test_intermediate_tiles_of_a_mesh_are_removed(self):
         for tiles in ("4", "9"):
             origin = self.path("work", f"scene_mesh.tiles{tiles}", "0123456789abcdef" * 2)
