@@ -286,6 +286,10 @@ class OptionsOfOpenMvs(Wall):
         self.assertIn("scene_transform_samples.ply: points on the mesh", said)
         self.refuses_and_keeps("--sample-mesh needs --mesh-file",
                                *self.command("TransformScene", "--sample-mesh", "-5", mesh=None))
+        made, said = self.new_files(*self.command("TransformScene", "-t", "t.txt", "-o", "plain",
+                                                  "--sample-mesh", "-300000", mesh=None))
+        self.assertEqual(made, {"plain.mvs"})
+        self.assertIn("warning: --sample-mesh -300000: without effect without --mesh-file", said)
 
     def test_images_elsewhere(self):
         shutil.copytree(self.path("colmap", "images"), self.path("work", "images", "dive"))
