@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/naming.h"
+#include "base/output_lock.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/same_file.h"
@@ -119,8 +120,6 @@ void keep_inputs(const Settings& settings) {
       inputs.push_back(file);
   }
   require_no_inputs(outputs, inputs, "--output-file");
-  std::error_code ignored;
-  fs::create_directories(settings.output.parent_path(), ignored);
   for (const fs::path& file : outputs) require_writable(file);
 }
 
@@ -266,6 +265,7 @@ int run(int argc, char** argv) {
   compare::ChangeFacts facts{settings.before.filename().string(),
                              settings.after.filename().string()};
   if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg, option_of);
+  const OutputLock lock = lock_output(change_files(settings).difference);
   const LocalFrame frame = frame_of_survey(settings, settings.before, settings.scene_before);
   facts.mesh_frame = frame;
   Mesh before = read_survey(settings, settings.before, settings.scene_before, frame);

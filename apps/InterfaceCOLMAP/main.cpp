@@ -5,6 +5,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/output_lock.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/same_file.h"
@@ -218,6 +219,7 @@ int export_scene(const Options& options) {
   io::ColmapModel model = io::export_colmap_model(scene, images);
   io::leave(frame, model);
   const fs::path folder = options.export_folder / "sparse";
+  const OutputLock lock = lock_output(folder);
   check_export_folder(folder);
   const std::size_t behind_ports = count_behind_ports(scene);
   if (behind_ports > 0)
@@ -324,6 +326,7 @@ int import_model(const Options& options) {
   const Input input = read_input(options);
   const fs::path folder = options.scene_file.parent_path();
   make_folder(folder);
+  const OutputLock lock = lock_output(options.scene_file);
   std::error_code ignored;
   const bool behind_ports =
       !input.housing.ports.empty() || fs::exists(io::housing_beside(options.scene_file), ignored);
@@ -353,6 +356,7 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   const ThreadLimit threads(options.parsed.common.max_threads);
   if (!options.masks.masks.empty()) {
+    const OutputLock lock = lock_output(options.masks.output);
     io::write_colmap_masks(options.masks, console_progress("Wrote masks"));
     return 0;
   }

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/naming.h"
+#include "base/output_lock.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
 #include "belong/surface_check.h"
@@ -103,8 +104,6 @@ void keep_inputs(const Settings& settings, const texture::Photographs& photograp
   inputs.push_back(settings.photographs.views_file);
   const std::vector<fs::path> outputs = map_files(settings).all();
   require_no_inputs(outputs, inputs, "--output-file");
-  std::error_code ignored;
-  fs::create_directories(settings.output.parent_path(), ignored);
   for (const fs::path& file : outputs) require_writable(file);
 }
 
@@ -328,6 +327,7 @@ int run(int argc, char** argv) {
   const Settings& settings = options.settings;
   const ThreadLimit limit(options.parsed.common.max_threads);
   const std::string crs = settings.epsg > 0 ? map::crs_of_epsg(settings.epsg, option_of) : "";
+  const OutputLock lock = lock_output(map_files(settings).heights);
   if (const auto counts = io::count_mvs(settings.scene.scene))
     memory_of(settings).require(counts->reading_bytes(),
                                 "reading " + settings.scene.scene.string());

@@ -107,9 +107,7 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
   const ThreadLimit threads(options.parsed.common.max_threads);
-  std::error_code ignored;
-  fs::create_directories(options.output.parent_path(), ignored);
-  const OutputLock lock(options.output, lock_use(options));
+  const OutputLock lock = lock_output(options.output, lock_use(options));
   check_outputs(options);
   if (const auto counts = io::count_mvs(options.scene.scene))
     memory_of(options).require(counts->reading_bytes(), "reading " + options.scene.scene.string());

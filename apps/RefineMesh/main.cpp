@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <functional>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -117,48 +116,8 @@ refine::State first_state(Mesh mesh, const Options& options, const std::string& 
   return state;
 }
 
-// The file of the state. A state that this run wrote is removed if the run ends with an error: the
-// next run would meet the same error. It is kept if a file cannot be written, because the run can
-// continue when this is mended. The state of an earlier, killed run is kept, too.
-class StateOfRun {
- public:
-  explicit StateOfRun(fs::path file) : file_(std::move(file)) {}
-  ~StateOfRun() {
-    if (is_removed_) remove();
-  }
-  StateOfRun(const StateOfRun&) = delete;
-  StateOfRun& operator=(const StateOfRun&) = delete;
-
-  void write(const refine::State& state, const std::string& fingerprint) {
-    writing([&] { refine::write_state(file_, state, fingerprint); });
-    is_removed_ = true;
-  }
-
-  // Calls `write`, which writes a file of the run.
-  void writing(const std::function<void()>& write) {
-    try {
-      write();
-    } catch (...) {
-      is_removed_ = false;
-      std::error_code ignored;
-      if (fs::exists(file_, ignored))
-        log_warning("{}: is kept: the same command continues from there", file_.string());
-      throw;
-    }
-  }
-
-  void remove() const {
-    std::error_code ignored;
-    fs::remove(file_, ignored);
-  }
-
- private:
-  fs::path file_;
-  bool is_removed_ = false;
-};
-
 Mesh refine_mesh(Mesh mesh, const densify::Project& project, const Options& options,
-                 StateOfRun& of_run) {
+                 refine::StateOfRun& of_run) {
   const std::string fingerprint = refine::fingerprint(
       mesh, options.refine, densify::fingerprint_of_views(project, options.scene));
   refine::State state = first_state(std::move(mesh), options, fingerprint);
@@ -226,16 +185,14 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
   const ThreadLimit threads(options.parsed.common.max_threads);
-  std::error_code ignored;
-  fs::create_directories(options.output.parent_path(), ignored);
-  const OutputLock lock(options.output);
+  const OutputLock lock = lock_output(options.output);
   const densify::Project project = densify::load_scene_and_headers(options.scene);
   check_outputs(options, project);
   bool has_marks = false;
   Mesh mesh = read_mesh(options, project.frame, has_marks);
   belong::check_surface(project.scene, belong::shape_of(mesh), {options.mesh, options.scene.input});
   points_of(project, options.scene.input, 1);  // a malformed cloud is an Error now, not after hours
-  StateOfRun state(state_file(options));
+  refine::StateOfRun state(state_file(options));
   mesh = refine_mesh(std::move(mesh), project, options, state);
   return_freed_memory();
   mesh = naming(options.mesh, [&] {

@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/naming.h"
+#include "base/other_tiles.h"
 #include "base/output_lock.h"
 #include "base/parallel.h"
 #include "base/progress.h"
@@ -18,7 +19,6 @@
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
 #include "mesh/clean.h"
-#include "other_tiles.h"
 #include "scene/check_mesh.h"
 #include "settings.h"
 
@@ -183,9 +183,7 @@ int run(int argc, char** argv) {
   share_one_heap();
   const Settings& settings = options.settings;
   const ThreadLimit limit(options.parsed.common.max_threads);
-  std::error_code ignored;
-  fs::create_directories(settings.output.parent_path(), ignored);
-  const OutputLock lock(settings.output);
+  const OutputLock lock = lock_output(settings.output);
   if (const auto counts = io::count_mvs(settings.scene.scene))
     memory_of(settings).require(counts->reading_bytes(),
                                 "reading " + settings.scene.scene.string());
@@ -204,7 +202,7 @@ int run(int argc, char** argv) {
   return_freed_memory();
   check_sides(settings, photographs, mesh);
   texture_and_write(settings, inputs, std::move(mesh), photographs, frame, axes);
-  warn_of_other_tiles(settings.output, settings.texture.tiles);
+  warn_of_other_tiles(other_tiles(settings.output, settings.texture.tiles));
   return 0;
 }
 

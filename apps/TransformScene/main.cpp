@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "base/log.h"
+#include "base/output_lock.h"
 #include "base/output_name.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
@@ -68,9 +69,10 @@ bool is_moved_as_ply(const Options& options) {
 
 std::vector<MovedPly> moved_plys(const Options& options) {
   std::vector<MovedPly> plys;
-  if (!options.moves()) return plys;
-  if (!options.cloud.empty()) plys.push_back({"cloud", options.cloud, cloud_output(options)});
-  if (is_moved_as_ply(options)) plys.push_back({"mesh", options.mesh, mesh_output(options)});
+  if (options.moves() && !options.cloud.empty())
+    plys.push_back({"cloud", options.cloud, cloud_output(options)});
+  if (options.writes_mesh() && is_moved_as_ply(options))
+    plys.push_back({"mesh", options.mesh, mesh_output(options)});
   return plys;
 }
 
@@ -83,7 +85,7 @@ struct Files {
 
 Files files_of(const Options& options) {
   Files files{moved_plys(options), {}, {}};
-  if (!options.moves() || options.mesh.empty()) return files;
+  if (!options.writes_mesh()) return files;
   if (is_moved_as_ply(options))
     files.textures = texture_copies(options.mesh, mesh_output(options));
   else
@@ -190,7 +192,8 @@ struct Output {
   std::function<void(const fs::path& temporary)> write;
 };
 
-// The last output is the scene. It needs the files beside it and the smaller images.
+// The last output is the scene, if it is written. It needs the files beside it and the smaller
+// images.
 std::vector<Output> all_outputs(const Options& options, const Files& files, const FrameMove& move,
                                 const Scene& scene) {
   std::vector<Output> outputs;
@@ -209,21 +212,33 @@ std::vector<Output> all_outputs(const Options& options, const Files& files, cons
   if (options.sample_mesh != 0)
     outputs.push_back(
         {samples_file(options), [&](const fs::path& file) { write_samples(options, move, file); }});
-  outputs.push_back({options.output, [&](const fs::path& file) {
-                       io::write_mvs(file, scene, options.files.working_folder);
-                     }});
+  if (options.writes_scene())
+    outputs.push_back({options.output, [&](const fs::path& file) {
+                         io::write_mvs(file, scene, options.files.working_folder);
+                       }});
   return outputs;
 }
 
-void tell_samples(const Options& options) {
+void tell_outputs(const Options& options, const Files& files, const std::vector<SmallImage>& images,
+                  const Scene& scene) {
+  const char* done = options.moves() ? "transformed" : "converted";
+  for (const MovedPly& ply : files.plys) log_info("{}: {} {}", ply.output.string(), done, ply.what);
+  if (files.mesh) log_info("{}: {} mesh", files.mesh->outputs[0].string(), done);
   if (options.sample_mesh != 0) log_info("{}: points on the mesh", samples_file(options).string());
+  if (options.max_resolution > 0)
+    log_info("{} of {} images were shrunk to at most {} pixels, in {}", images.size(),
+             scene.images.size(), options.max_resolution, folder_of_small_images(options).string());
+  if (options.writes_scene())
+    log_info("{}: {} images, {} points", options.output.string(), scene.images.size(),
+             scene.points.size());
 }
 
 // No file changes before all inputs are read. The files beside the scene are written before the
 // scene: without them the scene would be read as a scene without ports at the origin.
 void write_all(const Options& options, const Files& files, const FrameMove& move,
                const std::vector<SmallImage>& images, const io::SceneWithCameras& scene) {
-  const io::SceneLenses lenses = io::lenses_of(scene.scene, options.output);
+  const io::SceneLenses lenses =
+      options.writes_scene() ? io::lenses_of(scene.scene, options.output) : io::SceneLenses();
   const std::vector<Output> outputs = all_outputs(options, files, move, scene.scene);
   std::vector<fs::path> paths;
   for (const Output& output : outputs) paths.push_back(output.path);
@@ -231,19 +246,11 @@ void write_all(const Options& options, const Files& files, const FrameMove& move
     if (files.mesh) write_moved(*files.mesh, move, temporaries);
     for (std::size_t k = 0; k < outputs.size(); ++k)
       if (outputs[k].write) outputs[k].write(temporaries[k]);
+    if (!options.writes_scene()) return;
     write_small_images(images, folder_of_small_images(options));
     io::write_cameras_beside(options.output, scene, lenses, options.files);
   });
-  for (const MovedPly& ply : files.plys)
-    log_info("{}: transformed {}", ply.output.string(), ply.what);
-  if (files.mesh) log_info("{}: transformed mesh", files.mesh->outputs[0].string());
-  tell_samples(options);
-  if (options.max_resolution > 0)
-    log_info("{} of {} images were shrunk to at most {} pixels, in {}", images.size(),
-             scene.scene.images.size(), options.max_resolution,
-             folder_of_small_images(options).string());
-  log_info("{}: {} images, {} points", options.output.string(), scene.scene.images.size(),
-           scene.scene.points.size());
+  tell_outputs(options, files, images, scene.scene);
 }
 
 // A cloud or a mesh that stays beside the new scene from an earlier scene of this name would seem
@@ -270,6 +277,9 @@ int run(int argc, char** argv) {
   const ThreadLimit threads(options.parsed.common.max_threads);
   const Files files = files_of(options);
   check_outputs(options, files);
+  std::optional<OutputLock> lock;
+  const bool writes = !outputs_of(options, files).empty();
+  if (writes) lock.emplace(options.output);
   io::SceneWithCameras scene = io::read_scene_with_cameras(options.files);
   keep_images(options, files, scene.scene);
   for (const MovedPly& ply : files.plys) warn_of_foreign_points(options, scene, ply.input);
@@ -278,16 +288,11 @@ int run(int argc, char** argv) {
   apply(options, move, scene);
   if (options.writes_scene()) require_writable_scene(options, scene.scene);
   if (options.compute_volume) measure_volume(options, scene.scene, move);
-  if (!options.writes_scene()) {
-    if (options.sample_mesh != 0) write_samples(options, move, samples_file(options));
-    tell_samples(options);
-    return 0;
-  }
   std::vector<SmallImage> images;
   if (options.max_resolution > 0)
     images =
         find_large_images(options.max_resolution, folder_of_small_images(options), scene.scene);
-  write_all(options, files, move, images, scene);
+  if (writes) write_all(options, files, move, images, scene);
   warn_of_older_files(options, files);
   return 0;
 }

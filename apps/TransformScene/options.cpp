@@ -38,7 +38,8 @@ void declare_files(OptionList& list, Options& options, Texts& texts) {
            "scene to write (<input>_transform.mvs); the cloud and the mesh are written beside it, "
            "as .ply and _mesh.ply")
       .add_with_default("export-type", &options.export_type,
-                        "format of the mesh that is written: ply, obj, glb or gltf");
+                        "format of the mesh that is written: ply, obj, glb or gltf; a mesh that is "
+                        "not transformed is written, too, if this option is given");
   io::declare_scene_options(list, texts.cameras);
 }
 
@@ -103,19 +104,29 @@ void check_mesh_outputs(Options& options) {
   options.export_type = lower_case(given_type);
   if (!io::textured_format(options.export_type))
     fail("--export-type {}: must be one of ply, obj, glb, gltf", given_type);
+  options.converts = given(options.parsed, "export-type");
+}
+
+// Scripts for OpenMVS may state its default, which has no effect there without a mesh.
+void check_samples(Options& options) {
+  constexpr double kDefaultOfOpenMvs = -300000;
   if (!std::isfinite(options.sample_mesh))
     fail("--sample-mesh is {}: must be a number", options.sample_mesh);
-  if (options.sample_mesh != 0 && options.mesh.empty())
+  if (options.sample_mesh == 0 || !options.mesh.empty()) return;
+  if (options.sample_mesh != kDefaultOfOpenMvs || !options.writes_scene())
     fail("--sample-mesh needs --mesh-file: the mesh on which points are written");
+  log_warning("--sample-mesh {}: without effect without --mesh-file", options.sample_mesh);
+  options.sample_mesh = 0;
 }
 
 void check(const Options& options) {
   const int ways = !options.align.empty() + !options.transform.empty() + !options.positions.empty();
   if (ways > 1) fail("--align-file, --transform-file, --positions: only one can be given");
-  if (!options.writes_scene() && !options.compute_volume && options.sample_mesh == 0)
+  if (!options.writes_scene() && !options.writes_mesh() && !options.compute_volume &&
+      options.sample_mesh == 0)
     fail(
         "nothing to do: give --align-file, --transform-file, --positions, --max-resolution, "
-        "--sample-mesh or --compute-volume 1");
+        "--sample-mesh, --compute-volume 1, or --mesh-file and --export-type");
   if (options.compute_volume && options.mesh.empty())
     fail("--compute-volume needs --mesh-file: the mesh whose volume is measured");
   if (!options.cloud.empty() && options.cloud.extension() != ".ply")
@@ -140,8 +151,7 @@ void warn_of_no_effect(const Options& options) {
        "without --align-file or --positions");
   warn(!options.moves(), "scale-ports", "without a transformation");
   warn(!options.moves(), "transform-out", "without a transformation");
-  warn(!options.moves() || options.mesh.empty(), "export-type",
-       "without a mesh that is transformed");
+  warn(options.mesh.empty(), "export-type", "without --mesh-file");
   for (const char* name : {"plane-threshold", "up-axis"})
     warn(!options.compute_volume, name, "without --compute-volume 1");
 }
@@ -166,8 +176,9 @@ Options parse_command_line(int argc, const char* const* argv) {
   if (!options.parsed.run) return options;
   refuse_not_built(refused);
   set_paths(texts, options);
-  check(options);
   check_mesh_outputs(options);
+  check_samples(options);
+  check(options);
   warn_of_no_effect(options);
   return options;
 }

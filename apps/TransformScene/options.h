@@ -25,7 +25,10 @@ struct Options {
   std::string export_type = "ply";  // of the moved mesh: ply, obj, glb or gltf
   unsigned max_resolution = 0;      // longest side of an image [px]; 0: images stay as they are
 
+  bool converts = false;  // the mesh is written in export_type, moved or not
+
   bool moves() const { return !align.empty() || !transform.empty() || !positions.empty(); }
+  bool writes_mesh() const { return !mesh.empty() && (moves() || converts); }
   bool writes_scene() const { return moves() || max_resolution > 0; }
 };
 

@@ -70,11 +70,20 @@ void read_cloud(const Options& options, Contents& contents) {
                         {options.cloud, options.scene.scene});
 }
 
-// The corners of the mesh, for a first view without a cloud.
+const Mesh& mesh_of(const Contents& contents) {
+  return contents.textured ? contents.textured->mesh : *contents.mesh;
+}
+
+// The vertices of faces, each one once, for a first view without a cloud. Vertices that no face has
+// are not shown.
 PointCloud corners_of_mesh(const Contents& contents) {
+  const Mesh& mesh = mesh_of(contents);
+  std::vector<bool> is_corner(mesh.vertices.size());
+  for (const auto& face : mesh.faces)
+    for (const std::uint32_t vertex : face) is_corner[vertex] = true;
   PointCloud corners;
-  corners.positions =
-      contents.textured ? contents.textured->mesh.vertices : contents.mesh->vertices;
+  for (std::size_t v = 0; v < is_corner.size(); ++v)
+    if (is_corner[v]) corners.positions.push_back(mesh.vertices[v]);
   return corners;
 }
 
@@ -91,7 +100,7 @@ void read_mesh(const Options& options, Contents& contents) {
   }
   if (faces == 0) fail("{}: the mesh has no faces", options.mesh.string());
   log_info("{}: {} faces", options.mesh.string(), faces);
-  const Mesh& mesh = contents.mesh ? *contents.mesh : contents.textured->mesh;
+  const Mesh& mesh = mesh_of(contents);
   naming(options.mesh, [&] { check_mesh(mesh); });
   belong::check_surface(contents.scene.scene, belong::shape_of(mesh),
                         {options.mesh, options.scene.scene});
@@ -103,7 +112,7 @@ void check_sides(const Options& options, const Contents& contents) {
   std::vector<geometry::PosedCamera> cameras;
   for (const SceneImage& image : contents.scene.scene.images)
     if (image.calibrated) cameras.push_back({image.camera, image.pose});
-  const Mesh& mesh = contents.mesh ? *contents.mesh : contents.textured->mesh;
+  const Mesh& mesh = mesh_of(contents);
   naming(options.mesh, [&] {
     geometry::warn_if_inside_out(geometry::find_seen_part(mesh, cameras, {.strays = false}),
                                  options.mesh);

@@ -7,6 +7,7 @@
 #include "base/atomic_file.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/output_lock.h"
 #include "base/parallel.h"
 #include "contents.h"
 #include "folder.h"
@@ -23,6 +24,7 @@ int run(int argc, char** argv) {
   share_one_heap();
   const ThreadLimit limit(options.parsed.common.max_threads);
   const fs::path page = page_folder();
+  const OutputLock lock = lock_output(options.report);
   require_own_folder(options.report);
   const Contents contents = read_contents(options);
   write_own_folder(options.report, [&](const fs::path& staging) {

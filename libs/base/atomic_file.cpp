@@ -20,6 +20,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/parse_number.h"
+#include "base/without_slash.h"
 
 namespace axial {
 namespace {
@@ -229,11 +230,6 @@ void write_together(
 }
 
 namespace {
-
-// Turns "out/" into "out", so that temporaries lie beside the folder and not in it.
-std::filesystem::path without_slash(const std::filesystem::path& folder) {
-  return folder.has_filename() ? folder : folder.parent_path();
-}
 
 // The folder in which the files lie until all are written. The destructor removes it.
 class Staging {

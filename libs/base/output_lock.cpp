@@ -14,6 +14,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/without_slash.h"
 
 namespace axial {
 namespace {
@@ -95,8 +96,9 @@ void note_this_process(int descriptor, LockUse use) {
 
 }  // namespace
 
-OutputLock::OutputLock(fs::path output, LockUse use) : file_(output) {
-  file_ += ".lock";
+OutputLock::OutputLock(fs::path output, LockUse use) {
+  output = without_slash(output);
+  file_ = output.string() + ".lock";
   const int operation = use == LockUse::alone ? LOCK_EX : LOCK_SH;
   // A file that another process removed while this one opened it locks nothing. The number of
   // attempts is limited, because some file systems never state the same number for the same file.
@@ -128,6 +130,12 @@ OutputLock::~OutputLock() {
   if (try_lock(descriptor_, LOCK_EX) == Outcome::locked && is_file(descriptor_, file_))
     ::unlink(file_.c_str());
   ::close(descriptor_);
+}
+
+OutputLock lock_output(const fs::path& output, LockUse use) {
+  std::error_code ignored;
+  fs::create_directories(without_slash(output).parent_path(), ignored);
+  return OutputLock(output, use);
 }
 
 }  // namespace axial

@@ -9,11 +9,12 @@ namespace axial {
 // Whether a run writes an output alone, or together with other runs that write other parts of it.
 enum class LockUse { alone, shared };
 
-// Locks an output from construction to destruction. Two locks of one output exclude each other,
-// unless both are LockUse::shared. Processes lock the file <output>.lock by flock(), so that the
-// lock of a killed process ends with the process. The file holds a line for each process that has
-// the lock: its number, its machine, and the time since when. The last process removes the file; a
-// file that a killed process left behind is used and removed by the next one.
+// Locks an output, a file or a folder, from construction to destruction. Two locks of one output
+// exclude each other, unless both are LockUse::shared. Processes lock the file <output>.lock by
+// flock(), so that the lock of a killed process ends with the process. The file of a folder lies
+// beside the folder, also if `output` ends with a slash. The file holds a line for each process
+// that has the lock: its number, its machine, and the time since when. The last process removes the
+// file; a file that a killed process left behind is used and removed by the next one.
 class OutputLock {
  public:
   // Throws an Error that names `output` and the process that holds the lock if another process, or
@@ -29,5 +30,9 @@ class OutputLock {
   std::filesystem::path file_;
   int descriptor_ = -1;  // below 0: nothing is locked
 };
+
+// Creates the folder in which `output` lies and its parents where they are missing, and locks
+// `output`. A folder that cannot be created gives no Error.
+OutputLock lock_output(const std::filesystem::path& output, LockUse use = LockUse::alone);
 
 }  // namespace axial

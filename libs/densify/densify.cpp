@@ -30,12 +30,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// As in OpenMVS. If the folder cannot be made, require_writable reports it.
-void make_folder_of(const fs::path& file) {
-  std::error_code ignored;
-  fs::create_directories(file.parent_path(), ignored);
-}
-
 Report export_points(const Settings& settings) {
   const WrittenCloud cloud = export_cloud(load_scene(settings), settings);
   return {Result::point_export, cloud.file, cloud.points};
@@ -173,8 +167,7 @@ Report reconstruct(const Settings& settings, const SceneObserver& observer) {
         "interest exclude all points",
         settings.fusion.min_views, settings.name_of("fusion.min_views"));
   export_pinholes(project, settings, plan, existing, ply);
-  for (const fs::path& file : settings.fuse ? tile_outputs(settings) : std::vector<fs::path>())
-    fs::remove(file);
+  if (settings.fuse) remove_tiles(settings);
   if (settings.remove_dmaps && settings.fuse) remove_depth_maps(project, settings);
   return {settings.fuse ? Result::dense_cloud : Result::sparse_cloud, ply, points,
           project.references.size(), all_pinholes(project)};
@@ -185,8 +178,8 @@ Report reconstruct(const Settings& settings, const SceneObserver& observer) {
 Report densify(const Settings& settings, const SceneObserver& observer) {
   share_one_heap();
   const ThreadLimit threads(settings.max_threads);
-  make_folder_of(settings.output);
-  const OutputLock lock(settings.output, use_of_output(settings));
+  // If its folder cannot be made, require_writable reports it.
+  const OutputLock lock = lock_output(settings.output, use_of_output(settings));
   check_outputs(settings);
   if (only_exports(settings)) return export_points(settings);
   if (!settings.neighbour_lists_output.empty()) return write_lists(settings, observer);

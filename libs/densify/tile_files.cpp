@@ -8,7 +8,9 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "base/hash.h"
+#include "base/other_tiles.h"
 #include "io/bytes/json.h"
 
 namespace axial::densify {
@@ -30,6 +32,22 @@ std::string content_of(const fs::path& file) {
   while (in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) || in.gcount() > 0)
     print.add(std::string_view(bytes).substr(0, static_cast<std::size_t>(in.gcount())));
   return in.eof() ? print.hex() : std::string();
+}
+
+// What the side file says of a cloud that is complete and still has the bytes that were written.
+std::optional<nlohmann::json> side_of(const fs::path& ply) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(ply, ignored) || !fs::is_regular_file(side_file(ply), ignored))
+    return {};
+  try {
+    nlohmann::json side = io::read_json(side_file(ply));
+    if (side.at("version") != kTileVersion || side.at("content") != content_of(ply)) return {};
+    return side;
+  } catch (const Error&) {
+    return {};
+  } catch (const nlohmann::json::exception&) {  // an entry is missing or has another type
+    return {};
+  }
 }
 
 std::vector<double> numbers(const Eigen::VectorXd& values) {
@@ -70,17 +88,10 @@ void finish_tile(const fs::path& ply, const std::string& made_from, const CloudC
 }
 
 std::optional<CloudCounts> finished_tile(const fs::path& ply, const std::string& made_from) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(ply, ignored) || !fs::is_regular_file(side_file(ply), ignored))
-    return {};
+  const std::optional<nlohmann::json> side = side_of(ply);
   try {
-    const nlohmann::json side = io::read_json(side_file(ply));
-    if (side.at("version") != kTileVersion || side.at("made_from") != made_from ||
-        side.at("content") != content_of(ply))
-      return {};
-    return CloudCounts{side.at("points"), side.at("of_two_maps"), side.at("removed")};
-  } catch (const Error&) {
-    return {};
+    if (!side || side->at("made_from") != made_from) return {};
+    return CloudCounts{side->at("points"), side->at("of_two_maps"), side->at("removed")};
   } catch (const nlohmann::json::exception&) {  // an entry is missing or has another type
     return {};
   }
@@ -90,6 +101,20 @@ void remove_tile(const fs::path& ply) {
   std::error_code ignored;
   fs::remove(ply, ignored);
   fs::remove(side_file(ply), ignored);
+}
+
+void remove_tiles(const Settings& settings) {
+  for (std::size_t tile = 1; tile <= settings.fusion_tiles; ++tile)
+    remove_tile(tile_file(settings, tile));
+  std::vector<fs::path> foreign;
+  for (const fs::path& file : other_tiles(settings.output, settings.fusion_tiles)) {
+    if (lower_extension(file) != ".ply") continue;
+    if (side_of(file))
+      remove_tile(file);
+    else
+      foreign.push_back(file);
+  }
+  warn_of_other_tiles(foreign);
 }
 
 }  // namespace axial::densify

@@ -36,4 +36,9 @@ std::optional<CloudCounts> finished_tile(const std::filesystem::path& ply,
 // Removes the cloud and its side file.
 void remove_tile(const std::filesystem::path& ply);
 
+// Removes the tiles of the output, whose cloud is complete: the tiles of Settings::fusion_tiles
+// tiles, and those of other numbers of tiles whose side file tells that this program wrote them and
+// that nobody changed them. Warns of other clouds with the name of a tile.
+void remove_tiles(const Settings& settings);
+
 }  // namespace axial::densify

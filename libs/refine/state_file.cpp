@@ -10,6 +10,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/log.h"
 
 namespace axial::refine {
 namespace {
@@ -133,6 +134,32 @@ std::optional<State> read_state(const std::filesystem::path& file, const std::st
   in.read(end.data(), kEnd);
   if (!in || end != print.hex()) return {};
   return state;
+}
+
+StateOfRun::~StateOfRun() {
+  if (is_removed_) remove();
+}
+
+void StateOfRun::write(const State& state, const std::string& fingerprint) {
+  writing([&] { write_state(file_, state, fingerprint); });
+  is_removed_ = true;
+}
+
+void StateOfRun::writing(const std::function<void()>& write) {
+  try {
+    write();
+  } catch (...) {
+    is_removed_ = false;
+    std::error_code ignored;
+    if (std::filesystem::exists(file_, ignored))
+      log_warning("{}: is kept: the same command continues from there", file_.string());
+    throw;
+  }
+}
+
+void StateOfRun::remove() const {
+  std::error_code ignored;
+  std::filesystem::remove(file_, ignored);
 }
 
 }  // namespace axial::refine

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -23,5 +24,30 @@ void write_state(const std::filesystem::path& file, const State& state,
 // Returns the state that write_state() wrote with the same fingerprint. Returns nothing if there is
 // no such file, if it has another fingerprint, or if it is damaged.
 std::optional<State> read_state(const std::filesystem::path& file, const std::string& fingerprint);
+
+// The file of the state of a run. A state that this run wrote is removed if the run ends with an
+// error: the next run would meet the same error. It is kept if a file cannot be written, because
+// the run can continue when this is mended. The state of an earlier, killed run is kept, too.
+class StateOfRun {
+ public:
+  explicit StateOfRun(std::filesystem::path file) : file_(std::move(file)) {}
+  // Removes the state if write() has written it and writing() has thrown nothing.
+  ~StateOfRun();
+  StateOfRun(const StateOfRun&) = delete;
+  StateOfRun& operator=(const StateOfRun&) = delete;
+
+  // write_state().
+  void write(const State& state, const std::string& fingerprint);
+
+  // Calls `write`, which writes a file of the run. If it throws, the state is kept, and a warning
+  // names it.
+  void writing(const std::function<void()>& write);
+
+  void remove() const;  // at the end of a run
+
+ private:
+  std::filesystem::path file_;
+  bool is_removed_ = false;
+};
 
 }  // namespace axial::refine

@@ -280,9 +280,9 @@ class WrongInput(MapTest):
     def test_a_texture_of_an_obj_is_not_overwritten(self):
         self.succeeds("TextureMesh", "-i", self.scene, "-w", self.work, "-o", "textured",
                       "--export-type", "obj")
-        os.rename(self.path("work", "textured0.png"), self.path("work", "scene_map.jpg"))
+        os.rename(self.path("work", "textured_material_0_map_Kd.png"), self.path("work", "scene_map.jpg"))
         mtl = self.path("work", "textured.mtl")
-        write(mtl, read(mtl).decode().replace("textured0.png", "scene_map.jpg"))
+        write(mtl, read(mtl).decode().replace("textured_material_0_map_Kd.png", "scene_map.jpg"))
         self.refuses_and_keeps("--output-file", *self.map("-m", "textured.obj"))
 
     def test_a_full_disk_leaves_the_old_maps(self):

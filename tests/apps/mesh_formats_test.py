@@ -157,8 +157,9 @@ class Textured(Formats):
             found = self.outputs("TransformScene", mesh, "-m", "-t", self.path("t.txt"))
             self.assertLess({"out.mvs", "out_mesh.ply", "out_mesh0.png"}, set(found) | {""})
             self.assertIn(b"comment TextureFile out_mesh0.png\n", found["out_mesh.ply"])
-        self.refuses("t0.png", "TransformScene", "-i", self.scene, "-w", self.work, "-m", "e.glb", "-t",
-                     self.path("t.txt"), "-o", "t.mvs", "--transform-out", self.path("work", "t0.png"))
+        self.refuses("t_gltf0.png", "TransformScene", "-i", self.scene, "-w", self.work, "-m", "e.glb",
+                     "-t", self.path("t.txt"), "-o", "t.mvs", "--transform-out",
+                     self.path("work", "t_gltf0.png"))
 
     def test_pages_and_rendered_pictures(self):
         pages = []
@@ -173,10 +174,12 @@ class Textured(Formats):
 
     def test_their_pictures_are_not_replaced(self):
         before = contents(self.work)
-        self.put("u.gltf", read(self.path("work", "t.gltf")))
-        self.refuses("t0.png", "TextureMesh", "-i", self.scene, "-w", self.work, "-m", "u.gltf", "-o",
-                     "t", "--export-type", "ply")
+        self.put("u.gltf", read(self.path("work", "t.gltf")).replace(b'"t.bin"', b'"u.bin"'))
+        self.put("u.bin", read(self.path("work", "t.bin")))
+        self.refuses("t_gltf0.png", "TextureMesh", "-i", self.scene, "-w", self.work, "-m", "u.gltf",
+                     "-o", "t", "--export-type", "gltf")
         os.remove(self.path("work", "u.gltf"))
+        os.remove(self.path("work", "u.bin"))
         self.assertEqual(contents(self.work), before)
 
 

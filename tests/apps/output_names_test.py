@@ -13,7 +13,7 @@ import time
 
 from openmvs_chain_test import Glb
 from openmvs_scene import ascii_ply
-from programs import BIN, contents, files_below, main, read, write
+from programs import BIN, contents, files_below, grey_png, main, read, write
 from texture_mesh_test import mesh_ply, wall
 from tiny_scene import DENSIFY, TinyScene, mvs
 from transform_case import SHIFT, matrix_text, moved
@@ -246,7 +246,20 @@ class OptionsOfOpenMvs(Wall):
         self.succeeds(*self.command("TextureMesh", "-o", "textured"))
         made, _ = self.new_files(*self.command("TransformScene", "-t", "t.txt", "-o", "new",
                                                "--export-type", "gltf", mesh="textured.ply"))
-        self.assertEqual(made, {"new.mvs", "new_mesh.gltf", "new_mesh.bin", "new_mesh0.png"})
+        self.assertEqual(made, {"new.mvs", "new_mesh.gltf", "new_mesh.bin", "new_mesh_gltf0.png"})
+        made, said = self.new_files(*self.command("TransformScene", "-o", "only.2024", "--export-type",
+                                                  "glb", mesh="textured.ply"))
+        self.assertEqual(made, {"only.2024_mesh.glb"})
+        self.assertIn("only.2024_mesh.glb: converted mesh", said)
+        self.assertEqual(len(Glb(self.at("only.2024_mesh.glb")).json["images"]), 1)
+        made, _ = self.new_files(*self.command("TransformScene", "-o", "copy", "--export-type", "ply"))
+        self.assertEqual(made, {"copy_mesh.ply"})
+        head, body = self.at("copy_mesh.ply").split(b"end_header\n", 1)
+        for i, vertex in enumerate(wall()[0]):
+            for value, expected in zip(struct.unpack_from("<3f", body, 12 * i), vertex, strict=True):
+                self.assertAlmostEqual(value, expected, 6)
+        self.refuses_and_keeps("nothing to do", *self.command("TransformScene", "--export-type", "glb",
+                                                              mesh=None))
         self.refuses_and_keeps("has no textures", *self.command(
             "TransformScene", "-t", "t.txt", "-o", "last", "--export-type", "gltf"))
 
@@ -273,6 +286,10 @@ class OptionsOfOpenMvs(Wall):
         self.assertIn("scene_transform_samples.ply: points on the mesh", said)
         self.refuses_and_keeps("--sample-mesh needs --mesh-file",
                                *self.command("TransformScene", "--sample-mesh", "-5", mesh=None))
+        made, said = self.new_files(*self.command("TransformScene", "-t", "t.txt", "-o", "plain",
+                                                  "--sample-mesh", "-300000", mesh=None))
+        self.assertEqual(made, {"plain.mvs"})
+        self.assertIn("warning: --sample-mesh -300000: without effect without --mesh-file", said)
 
     def test_images_elsewhere(self):
         shutil.copytree(self.path("colmap", "images"), self.path("work", "images", "dive"))
@@ -335,6 +352,21 @@ class Stale(Wall):
             *self.command("TextureMesh", "-o", "other", "--tiles", "2")).stdout)
         self.assertEqual(self.at("scene_texture.tile1-9.ply"), b"old")
 
+    def test_tiles_of_a_cloud_are_removed(self):
+        densify = (*DENSIFY, "-i", "scene.mvs", "-w", self.work)
+        self.succeeds(*densify, "--fusion-mode", "1")
+        for tile in ("1/2", "2/2", "1/3"):
+            self.succeeds(*densify, "--tile", tile)
+        changed = self.path("work", "scene_dense.tile2-2.ply")
+        write(changed, read(changed) + b" ")
+        tiles = lambda: {name for name in files_below(self.work) if ".tile" in name}
+        self.assertEqual(len(tiles()), 6)
+        said = self.succeeds(*densify, "--fusion-tiles", "4").stdout
+        self.assertEqual(tiles(), {"scene_dense.tile2-2.ply", "scene_dense.tile2-2.ply.json"})
+        self.assertIn(f"warning: {changed}: of another number of tiles", said)
+        os.remove(changed)
+        self.assertNotIn("of another number", self.succeeds(*densify).stdout)
+
     def test_intermediate_tiles_of_a_mesh_are_removed(self):
         for tiles in ("4", "9"):
             origin = self.path("work", f"scene_mesh.tiles{tiles}", "0123456789abcdef" * 2)
@@ -385,6 +417,26 @@ class Rivals(Wall):
             self.refuses_and_keeps(f"{output}: {who}", *self.command(program))
             lock.close()
             self.succeeds(*self.command(program))  # the file alone is no lock
+            self.assertNotIn(output + ".lock", files_below(self.work))
+        masks = ("InterfaceCOLMAP", "-i", self.path("colmap", "images"), "-w", self.work,
+                 "--mask-path", self.path("mask.png"), "-o", "masks/")
+        write(self.path("mask.png"), grey_png([bytes(96)] * 72))
+        for output, command in (
+                ("map.dem.tif", self.command("MapSurface", "-o", "map", "--gsd", "0.02")),
+                ("surveys.change.difference.tif",
+                 ("CompareSurveys", "-i", "mesh.ply", "--other", "mesh.ply", "-w", self.work, "-o",
+                  "surveys")),
+                ("page", self.command("ViewScene", "--report", "page/")),
+                ("moved.mvs", self.command("TransformScene", "-t", "t.txt", "-o", "moved")),
+                ("some.mvs", self.command("TransformScene", "--sample-mesh", "-5", "-o", "some")),
+                ("made.mvs", ("InterfaceCOLMAP", "-i", self.path("colmap"), "-w", self.work, "-o",
+                              "made")),
+                ("sparse", ("InterfaceCOLMAP", "-i", "scene.mvs", "-w", self.work)),
+                ("masks", masks)):
+            lock = self.held(output, fcntl.LOCK_EX)
+            self.refuses_and_keeps(f"{output}: {who}", *command)
+            lock.close()
+            self.succeeds(*command)
             self.assertNotIn(output + ".lock", files_below(self.work))
         densify = (*DENSIFY, "-i", "scene.mvs", "-w", self.work)
         lock = self.held("scene_dense.mvs", fcntl.LOCK_EX)

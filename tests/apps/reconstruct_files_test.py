@@ -426,10 +426,11 @@ class OutOfDate(FilesCase):
         kept = [self.put(f"out/{name}") for name in
                 ("scene_map.qgz", "scene_map.dem.tif.aux.xml", "scene_textured_cleaned.ply",
                  "scene_textured.blend", "scene_textured0 edited.png")]
-        texture = self.put("out/scene_textured1.png")
+        textures = [self.put(f"out/scene_textured{end}.png") for end in
+                    ("1", "_material_0_map_Kd", "_material_12_map_Kd", "_gltf0", "_gltf12")]
         self.succeeds("--texture=--outlier-threshold 0.1")
         self.assertEqual([path.name for path in kept if not path.exists()], [])
-        self.assertFalse(texture.exists())
+        self.assertEqual([path.name for path in textures if path.exists()], [])
 
 
 if __name__ == "__main__":

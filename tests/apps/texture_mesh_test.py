@@ -76,13 +76,24 @@ class Files(TextureTest):
             self.refuses_and_keeps(f"--output-file {folder}: must be the name of a file",
                                    *self.texture("-o", folder))
 
+    def test_a_run_keeps_the_textures_of_another_format(self):
+        before = contents(self.work)
+        kinds = ("ply", "obj", "glb", "gltf")
+        for kind in kinds:
+            self.succeeds(*self.texture("-o", "out", "--export-type", kind,
+                                        "--sharpness-weight", str(kinds.index(kind))))
+            after = contents(self.work)
+            self.assertEqual({name: after[name] for name in before}, before)
+            before = after
+
     def test_every_format_has_its_files(self):
         before = files_below(self.work)
         self.succeeds(*self.texture("-o", "out.mvs", "--export-type", "ply,obj,glb,gltf"))
         self.assertEqual(files_below(self.work) - before,
-                         {"out.ply", "out.obj", "out.mtl", "out.glb", "out.gltf", "out.bin", "out0.png"})
+                         {"out.ply", "out.obj", "out.mtl", "out.glb", "out.gltf", "out.bin", "out0.png",
+                          "out_material_0_map_Kd.png", "out_gltf0.png"})
         self.assertIn("mtllib out.mtl\n", read(self.path("work", "out.obj")).decode())
-        self.assertIn("map_Kd out0.png\n", read(self.path("work", "out.mtl")).decode())
+        self.assertIn("map_Kd out_material_0_map_Kd.png\n", read(self.path("work", "out.mtl")).decode())
         glb = read(self.path("work", "out.glb"))
         gltf = json.loads(glb[20:20 + struct.unpack_from("<I", glb, 12)[0]])
         indices = gltf["accessors"][gltf["meshes"][0]["primitives"][0]["indices"]]

@@ -92,6 +92,16 @@ class ViewFolder(ViewCase):
                           "data/cloud-0000.js", "data/files.json",
                           *(f"photographs/{i:05}.jpg" for i in range(3))})
 
+    def test_the_first_view_of_a_mesh_is_that_of_its_faces(self):
+        views = []
+        vertices, faces = wall(z=1.1)
+        for name, more in (("a.ply", []), ("b.ply", [(500 + i, 0, 0) for i in range(300)])):
+            write(self.path("work", name), mesh_ply(vertices + more, faces))
+            self.succeeds("ViewScene", "-i", self.scene, "-w", self.work, "-m", name, "--report", name + "-page")
+            text = read(self.path("work", name + "-page", "data", "scene.js")).decode()
+            views.append(json.loads(text[text.index("{"):text.rindex("}") + 1])["view"])
+        self.assertEqual(views[0], views[1])
+
     def test_it_is_the_same_for_any_number_of_threads(self):
         self.succeeds(*self.view("--max-threads", 1))
         one = contents(self.report)

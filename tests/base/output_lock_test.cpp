@@ -102,6 +102,21 @@ TEST_F(Locked, AFileOfAnotherProgramIsKept) {
   }
 }
 
+TEST_F(Locked, TheLockOfAFolderIsBesideTheFolder) {
+  const Holder other(output, LockUse::alone);
+  fs::create_directories(output);
+  EXPECT_THAT(test::error_of([&] { const OutputLock lock(output / ""); }),
+              HasSubstr(output.string() + ": another run"));
+  EXPECT_TRUE(fs::is_empty(output));
+}
+
+TEST_F(Locked, TheFolderOfALockedOutputIsMade) {
+  const fs::path folder = output.parent_path() / "new" / "page";
+  const OutputLock lock = lock_output(folder / "");
+  EXPECT_TRUE(fs::exists(folder.string() + ".lock"));
+  EXPECT_FALSE(fs::exists(folder));
+}
+
 TEST_F(Locked, AFolderThatDoesNotExistIsNotLocked) {
   const OutputLock lock(output.parent_path() / "none" / "scene.mvs");
   EXPECT_FALSE(fs::exists(output.parent_path() / "none"));

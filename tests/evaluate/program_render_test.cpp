@@ -161,9 +161,10 @@ TEST_F(Programs, RefuseToRender) {
   io::write_png(folder_ / "0001.jpg", cv::Mat3b(10, 10));
   refuses("0001.jpg: is 10 x 10, but its camera is 320 x 240",
           "-i textured.ply --photographs . " + views);
-  fs::remove(folder_ / "textured0.png");
+  for (const char* texture : {"textured0.png", "textured_material_0_map_Kd.png"})
+    fs::remove(folder_ / texture);
   refuses("textured0.png", "-i textured.ply --render-folder out" + views);
-  refuses("textured0.png", "-i textured.obj --render-folder out" + views);
+  refuses("textured_material_0_map_Kd.png", "-i textured.obj --render-folder out" + views);
 }
 
 }  // namespace

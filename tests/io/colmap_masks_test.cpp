@@ -104,5 +104,20 @@ TEST_F(ColmapMasksTest, WrongInputIsRefused) {
   EXPECT_THAT(error(), HasSubstr("none: has no photographs"));
 }
 
+TEST_F(ColmapMasksTest, AreNotWrittenAmongThePhotographs) {
+  put_mask("a.mask.png");
+  put_mask("dive/b.png");
+  fs::create_directory_symlink(masks_.images, folder_ / "link");
+  for (const fs::path& output : {masks_.images, masks_.images / "", masks_.images / "new" / "masks",
+                                 folder_ / "link/masks"}) {
+    masks_.output = output;
+    EXPECT_THAT(error_of([&] { write_colmap_masks(masks_); }),
+                HasSubstr("masks would count as photographs"));
+    EXPECT_FALSE(fs::exists(output / "a.jpg.png"));
+  }
+  masks_.output = folder_ / "images2";
+  EXPECT_EQ(write_colmap_masks(masks_), 2u);
+}
+
 }  // namespace
 }  // namespace axial::io

@@ -12,80 +12,105 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-// A working folder `here`, and a scene in project/run. Photographs are in the folder that a test
-// names.
+using testing::ElementsAre;
+
+// A working folder `here`, and a scene in a/b/c/d/project/run. Photographs are in the folder that a
+// test names.
 class ImageFoldersTest : public testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::canonical(test::empty_folder());
-    fs::create_directories(folder_ / "here");
-    fs::create_directories(folder_ / "project/run");
+    fs::create_directories(here());
+    fs::create_directories(run());
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  std::string photograph(const fs::path& below) {
-    fs::create_directories((folder_ / below).parent_path());
-    test::put(folder_ / below, "a photograph");
-    return (folder_ / below).string();
+  fs::path here() const { return folder_ / "here"; }
+  fs::path above() const { return folder_ / "a/b/c/d/project"; }
+  fs::path run() const { return above() / "run"; }
+
+  static std::string photograph(const fs::path& folder, const std::string& name) {
+    fs::create_directories((folder / name).parent_path());
+    test::put(folder / name, "a photograph");
+    return (folder / name).string();
   }
-  ImageFolders folders() const { return {folder_ / "here", folder_ / "project/run/scene.mvs"}; }
+  std::vector<std::string> find(const std::vector<std::string>& names) const {
+    return find_files_of_scene(here(), run() / "scene.mvs", names, "images");
+  }
 
   fs::path folder_;
 };
 
 TEST_F(ImageFoldersTest, TheWorkingFolderIsFirst) {
-  const std::string usual = photograph("here/images/a.jpg");
+  const std::string usual = photograph(here(), "images/a.jpg");
   const LogCapture log;
-  EXPECT_EQ(folders().find("images/a.jpg"), usual);
-  EXPECT_EQ(folders().find("images/./x/../a.jpg"), usual);
+  EXPECT_THAT(find({"images/a.jpg", "images/./x/../a.jpg", ""}), ElementsAre(usual, usual, ""));
   EXPECT_EQ(log.text(), "");
 }
 
-TEST_F(ImageFoldersTest, TheSceneAndTheFoldersAboveAreNext) {
-  const std::string above = photograph("project/images/a.jpg");
-  const std::string beside = photograph("project/run/images/b.jpg");
-  photograph("project/images/b.jpg");
-  ImageFolders folders = this->folders();
+TEST_F(ImageFoldersTest, TheFolderOfTheSceneIsNext) {
+  const std::string beside = photograph(run(), "images/a.jpg");
+  photograph(above(), "images/a.jpg");
   const LogCapture log;
-  EXPECT_EQ(folders.find("images/a.jpg"), above);
-  EXPECT_EQ(folders.find("images/b.jpg"), beside);  // the nearest one
-  const std::string told = "scene.mvs: the paths of its images start at ";
-  EXPECT_THAT(log.text(), HasSubstr(told + (folder_ / "project").string()));
-  EXPECT_EQ(log.text().find(told), log.text().rfind(told));  // once
+  EXPECT_THAT(find({"images/a.jpg"}), ElementsAre(beside));
+  EXPECT_THAT(log.text(),
+              HasSubstr("scene.mvs: the paths of its images start at " + run().string() + "\n"));
+}
+
+TEST_F(ImageFoldersTest, AFolderThatHasAllFilesIsTaken) {
+  const std::string a = photograph(above(), "images/a.jpg");
+  const std::string b = photograph(above(), "images/b.jpg");
+  photograph(here(), "images/a.jpg");
+  const std::string other = photograph(run(), "images/b.jpg");
+  const LogCapture log;
+  EXPECT_THAT(find({"images/a.jpg", "images/b.jpg"}), ElementsAre(a, b));
+  EXPECT_THAT(log.text(), HasSubstr("the paths of its images start at " + above().string()));
+  EXPECT_THAT(log.text(), HasSubstr(a + " is used, although " + here().string()));
+}
+
+TEST_F(ImageFoldersTest, TheFolderWithTheMostFilesIsTaken) {
+  const std::string a = photograph(above(), "a.jpg"), b = photograph(above(), "b.jpg");
+  photograph(run(), "c.jpg");
+  EXPECT_THAT(find({"a.jpg", "b.jpg", "c.jpg"}), ElementsAre(a, b, (above() / "c.jpg").string()));
+}
+
+TEST_F(ImageFoldersTest, OnlyNearFoldersAboveTheSceneAreSearched) {
+  const std::string highest = photograph(folder_ / "a/b/c", "a.jpg");
+  photograph(folder_ / "a/b", "b.jpg");
+  EXPECT_THAT(find({"a.jpg"}), ElementsAre(highest));
+  EXPECT_THAT(find({"b.jpg"}), ElementsAre((here() / "b.jpg").string()));
 }
 
 TEST_F(ImageFoldersTest, AbsoluteNamesBelowTheWorkingFolderAreFound) {
-  const std::string above = photograph("project/images/a.jpg");
-  EXPECT_EQ(folders().find(folder_ / "here/images/a.jpg"), above);
-  const std::string other = (folder_ / "elsewhere/images/a.jpg").string();
-  EXPECT_EQ(folders().find(other), other);
+  const std::string found = photograph(above(), "images/a.jpg");
+  const std::string elsewhere = (folder_ / "elsewhere/images/a.jpg").string();
+  EXPECT_THAT(find({(here() / "images/a.jpg").string(), elsewhere}), ElementsAre(found, elsewhere));
 }
 
-TEST_F(ImageFoldersTest, AFileThatIsNowhereIsInTheWorkingFolder) {
+TEST_F(ImageFoldersTest, FilesThatAreNowhereAreInTheWorkingFolder) {
   const LogCapture log;
-  EXPECT_EQ(folders().find("images/a.jpg"), (folder_ / "here/images/a.jpg").string());
+  EXPECT_THAT(find({"images/a.jpg"}), ElementsAre((here() / "images/a.jpg").string()));
   EXPECT_EQ(log.text(), "");
 }
 
 TEST_F(ImageFoldersTest, TwoFilesOfOneNameAreOneWarning) {
   for (const char* name : {"a.jpg", "b.jpg"}) {
-    photograph(fs::path("here") / name);
-    photograph(fs::path("project/run") / name);
+    photograph(here(), name);
+    photograph(run(), name);
   }
-  ImageFolders folders = this->folders();
   const LogCapture log;
-  for (const char* name : {"a.jpg", "b.jpg"})
-    EXPECT_EQ(folders.find(name), (folder_ / "here" / name).string());
-  EXPECT_THAT(log.text(), HasSubstr("a.jpg is used, although " +
-                                    (folder_ / "project/run/a.jpg").string() + " exists, too"));
+  EXPECT_THAT(find({"a.jpg", "b.jpg"}),
+              ElementsAre((here() / "a.jpg").string(), (here() / "b.jpg").string()));
+  EXPECT_THAT(log.text(),
+              HasSubstr("a.jpg is used, although " + (run() / "a.jpg").string() + " exists, too"));
   EXPECT_EQ(log.text().find("b.jpg"), std::string::npos);
 }
 
 TEST_F(ImageFoldersTest, TwoNamesOfOneFileAreNoWarning) {
-  photograph("project/run/a.jpg");
-  fs::create_hard_link(folder_ / "project/run/a.jpg", folder_ / "here/a.jpg");
+  photograph(run(), "a.jpg");
+  fs::create_hard_link(run() / "a.jpg", here() / "a.jpg");
   const LogCapture log;
-  folders().find("a.jpg");
+  find({"a.jpg"});
   EXPECT_EQ(log.text(), "");
 }
 

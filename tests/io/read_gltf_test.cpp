@@ -382,6 +382,8 @@ TEST_F(ReadGltfTest, PlacesThatAreNotFilesAreRefused) {
   };
   EXPECT_THAT(error_with({{"uri", "https://a.b/c.png"}}), HasSubstr("images[0] is at https:"));
   EXPECT_THAT(error_with({{"uri", "none.png"}}), HasSubstr("none.png"));
+  EXPECT_THAT(error_with({{"uri", "a tree.png%00.jpg"}}),
+              HasSubstr("images[0] names a file with a NUL byte"));
   EXPECT_THAT(error_with({{"uri", "data:image/png;base64,A$=="}}), HasSubstr("is not base64"));
   EXPECT_THAT(error_with({{"uri", "data:image/png;base64"}}), HasSubstr("without a comma"));
   EXPECT_THAT(error_with(json::object()), HasSubstr("either a uri or a bufferView"));

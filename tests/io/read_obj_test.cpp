@@ -15,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using Face = std::array<std::uint32_t, 3>;
 using V = Eigen::Vector3f;
@@ -112,12 +113,16 @@ TEST_F(ReadObjTest, OptionsOfMapsMoveCoordinates) {
   // A scale of 2 shows the picture twice along each axis, or its edge.
   EXPECT_EQ(with_map("map_Kd -s 2 2 t.png").textures[0].size(), cv::Size(64, 32));
   EXPECT_EQ(with_map("map_Kd -clamp on -s 2 2 t.png").textures[0].size(), cv::Size(32, 16));
-  const auto error_of_map = [&](const char* map) { return test::error_of([&] { with_map(map); }); };
+  const auto error_of_map = [&](const std::string& map) {
+    return test::error_of([&] { with_map(map); });
+  };
   EXPECT_THAT(error_of_map("map_Kd -clamp maybe t.png"), HasSubstr("m.mtl: line 2: -clamp is"));
   EXPECT_THAT(error_of_map("map_Kd -o t.png"), HasSubstr("m.mtl: line 2: -o has no number"));
   EXPECT_THAT(error_of_map("map_Kd -t 1 t.png"), HasSubstr("option -t of map_Kd is not supported"));
   EXPECT_THAT(error_of_map("map_Kd -s 1 1 1"), HasSubstr("map_Kd names no file"));
   EXPECT_THAT(error_of_map("map_Kd none.png"), HasSubstr("none.png"));
+  EXPECT_THAT(error_of_map(std::string("map_Kd t.png\0.png", 17)),
+              EndsWith("m.mtl: line 2: the name of a file contains a NUL byte"));
 }
 
 TEST_F(ReadObjTest, FilesAreFoundAsOtherSystemsNameThem) {
@@ -131,6 +136,10 @@ TEST_F(ReadObjTest, FilesAreFoundAsOtherSystemsNameThem) {
                 ElementsAre(testing::ResultOf([](const fs::path& path) { return path.filename(); },
                                               fs::path("My Wall 2.PNG"))));
   }
+  const std::string elsewhere[] = {(folder_ / "t.png").string(),
+                                   "../" + folder_.filename().string() + "/t.png"};
+  for (const std::string& name : elsewhere)
+    EXPECT_EQ(with_map("map_Kd " + name).textures[0].size(), cv::Size(32, 16)) << name;
   EXPECT_EQ(with_map("map_Kd C:\\scans\\reef\\T.PNG").textures[0].size(), cv::Size(32, 16));
   // A name that two files have in another case is not guessed.
   write_png(folder_ / "T.png", cv::Mat3b(2, 2, cv::Vec3b(9, 9, 9)));
@@ -152,6 +161,7 @@ TEST_F(ReadObjTest, SeveralMaterialFiles) {
   }
   EXPECT_THAT(error("mtllib none.mtl\n"), HasSubstr("none.mtl"));
   EXPECT_THAT(error("mtllib m.mtl none.mtl\n"), HasSubstr("none.mtl"));
+  EXPECT_THAT(error(std::string("mtllib m.mtl\0\n", 14)), HasSubstr("line 1: the name of a file"));
   // Without the MTL file the shape can be read; the file that is named belongs to the mesh.
   write("m.obj", "mtllib none.mtl\n" + kPoints + faces);
   EXPECT_EQ(read_shape(folder_ / "m.obj").faces.size(), 2u);

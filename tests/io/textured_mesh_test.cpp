@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "base/atomic_file.h"
@@ -325,8 +326,8 @@ TEST_F(TexturedMeshTest, GltfRefersToItsFiles) {
   const Gltf gltf{nlohmann::json::parse(bytes("a mesh.gltf")), bytes("a mesh.bin")};
   check_gltf(gltf, 2);
   EXPECT_EQ(gltf.json["buffers"][0]["uri"], "a%20mesh.bin");
-  EXPECT_EQ(gltf.json["images"][1]["uri"], "a%20mesh1.png");
-  EXPECT_TRUE(fs::exists(folder_ / "a mesh1.png"));
+  EXPECT_EQ(gltf.json["images"][1]["uri"], "a%20mesh_gltf1.png");
+  EXPECT_TRUE(fs::exists(folder_ / "a mesh_gltf1.png"));
 }
 
 TEST_F(TexturedMeshTest, FarFromTheOriginPositionsStayLocal) {
@@ -362,6 +363,8 @@ TEST_F(TexturedMeshTest, WrongMeshesAreNotWritten) {
 TEST_F(TexturedMeshTest, TexturesAreFoundAndCountedWithoutReadingThem) {
   const TexturedMesh mesh = two_squares(2);
   std::vector<std::uint64_t> bytes;
+  std::set<fs::path> names;
+  std::size_t count = 0;
   for (const TexturedFormat format :
        {TexturedFormat::ply, TexturedFormat::obj, TexturedFormat::glb, TexturedFormat::gltf}) {
     write_textured_mesh(path_, mesh, format);
@@ -371,10 +374,13 @@ TEST_F(TexturedMeshTest, TexturesAreFoundAndCountedWithoutReadingThem) {
     all.insert(all.end(), files.materials.begin(), files.materials.end());
     all.insert(all.end(), files.textures.begin(), files.textures.end());
     EXPECT_EQ(all, written);
+    names.insert(written.begin(), written.end());
+    count += written.size();
     bytes.push_back(bytes_to_read_textures(written[0]));
   }
   const std::uint64_t decoding = bytes_needed(read_image_header(folder_ / "a mesh0.png"));
   EXPECT_THAT(bytes, testing::Each(2 * 3 * 32 * 16 + decoding));
+  EXPECT_EQ(names.size(), count) << "two formats share the name of a file";
 }
 
 TEST_F(TexturedMeshTest, PlyKeepsTheMarksOfUnseenFaces) {

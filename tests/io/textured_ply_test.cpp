@@ -134,5 +134,13 @@ TEST_F(TexturedPlyTest, ATextureWithoutCoordinatesMakesNoTexturedMesh) {
   EXPECT_FALSE(is_textured_mesh(file));
 }
 
+TEST_F(TexturedPlyTest, ANameWithANulByteIsRefused) {
+  write_atomically(folder_ / "m.ply",
+                   std::string("ply\nformat ascii 1.0\ncomment TextureFile t.png") + '\0' +
+                       "\nelement vertex 0\nend_header\n");
+  EXPECT_THAT(test::error_of([&] { textures_of_ply(folder_ / "m.ply"); }),
+              HasSubstr("m.ply: line 3: the name of a file contains a NUL byte"));
+}
+
 }  // namespace
 }  // namespace axial::io

@@ -6,6 +6,8 @@
 #include <set>
 
 #include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/log.h"
 #include "refine/photographed_mesh.h"
 #include "support/empty_folder.h"
 
@@ -120,6 +122,48 @@ TEST(StateFile, DamagedAndForeignFilesAreNotRead) {
   ASSERT_TRUE(read);
   EXPECT_TRUE(read->mesh.vertices == state.mesh.vertices);
   EXPECT_EQ(read->pairs, state.pairs);
+}
+
+class RunWithState : public testing::Test {
+ protected:
+  // A run that ends with an Error after `work`.
+  template <class Work>
+  void failing_run(Work work) const {
+    EXPECT_THROW(
+        {
+          StateOfRun state(file_);
+          work(state);
+          fail("a photograph cannot be read");
+        },
+        Error);
+  }
+
+  const std::filesystem::path file_ = test::empty_folder() / "mesh.state";
+  const std::string print_ = std::string(32, 'a');
+};
+
+TEST_F(RunWithState, AnErrorRemovesTheStateThatTheRunWrote) {
+  failing_run([&](StateOfRun& state) {
+    state.write({}, print_);
+    EXPECT_TRUE(read_state(file_, print_));
+  });
+  EXPECT_FALSE(std::filesystem::exists(file_));
+}
+
+TEST_F(RunWithState, AnErrorKeepsTheStateOfAnEarlierRun) {
+  write_state(file_, {}, print_);
+  failing_run([](StateOfRun&) {});
+  EXPECT_TRUE(read_state(file_, print_));
+}
+
+TEST_F(RunWithState, AFileThatCannotBeWrittenKeepsTheState) {
+  const LogCapture log;
+  failing_run([&](StateOfRun& state) {
+    state.write({}, print_);
+    state.writing([] { fail("mesh.ply: cannot be written"); });
+  });
+  EXPECT_TRUE(read_state(file_, print_));
+  EXPECT_NE(log.text().find("mesh.state: is kept: the same command continues"), std::string::npos);
 }
 
 TEST(StateFile, TheFingerprintDependsOnEverythingThatChangesTheResult) {

@@ -76,6 +76,15 @@ fs::path output_of(const MaskedPhotograph& photograph, const ColmapMasks& masks)
   return masks.output / (photograph.image.lexically_relative(masks.images).string() + ".png");
 }
 
+void refuse_masks_among_photographs(const ColmapMasks& masks) {
+  std::error_code error;
+  const fs::path output = fs::weakly_canonical(masks.output, error);
+  const fs::path part = output.lexically_relative(fs::weakly_canonical(masks.images, error));
+  if (!error && !part.empty() && *part.begin() != "..")
+    fail("{} {}: is in the folder of the photographs, {}, where masks would count as photographs",
+         masks.name_of("output"), masks.output.string(), masks.images.string());
+}
+
 void check_mask_outputs(const ColmapMasks& masks, std::span<const MaskedPhotograph> photographs) {
   std::vector<fs::path> inputs, outputs;
   for (const MaskedPhotograph& one : photographs) {
@@ -110,6 +119,7 @@ void tell(const ColmapMasks& masks, std::span<const MaskedPhotograph> photograph
 }  // namespace
 
 std::size_t write_colmap_masks(const ColmapMasks& masks, const ProgressSink& progress) {
+  refuse_masks_among_photographs(masks);
   std::vector<MaskedPhotograph> photographs = photographs_in(masks.images);
   choose_mask_files(masks, photographs);
   check_mask_outputs(masks, photographs);

@@ -32,7 +32,8 @@ struct ColmapMasks {
 // out.
 //
 // Error if `images` has no photograph, a photograph has no mask, a mask cannot be read or has
-// another aspect ratio than its photograph, or a mask that is read would be replaced.
+// another aspect ratio than its photograph, a mask that is read would be replaced, or `output` is
+// `images` or a folder in it: COLMAP and this function would take the masks for photographs.
 std::size_t write_colmap_masks(const ColmapMasks& masks, const ProgressSink& progress = {});
 
 }  // namespace axial::io

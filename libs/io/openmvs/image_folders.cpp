@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "private/openmvs/image_folders.h"
 
+#include <algorithm>
+#include <span>
+
 #include "base/log.h"
 
 namespace axial::io {
@@ -8,7 +11,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool is_file(const fs::path& path) {
+using Paths = std::vector<fs::path>;
+
+bool is_on_disk(const fs::path& path) {
   std::error_code error;
   return fs::exists(path, error) && !error;
 }
@@ -19,41 +24,75 @@ fs::path part_below(const fs::path& folder, const fs::path& path) {
   return part.empty() || *part.begin() == ".." || *part.begin() == "." ? fs::path() : part;
 }
 
-}  // namespace
-
-ImageFolders::ImageFolders(const fs::path& working_folder, const fs::path& scene)
-    : working_folder_(working_folder), scene_(scene) {
-  fs::path folder = fs::absolute(scene).lexically_normal().parent_path();
-  for (; !folder.empty(); folder = folder.parent_path()) {
-    others_.push_back(folder);
-    if (folder == folder.parent_path()) break;
-  }
+// The part of a name that starts at a folder; empty: the name is empty or names a place of its own.
+fs::path relative_part(const fs::path& name, const fs::path& working_folder) {
+  return name.is_absolute() ? part_below(working_folder, name.lexically_normal()) : name;
 }
 
-std::string ImageFolders::find(const fs::path& name) {
-  const fs::path usual = (working_folder_ / name).lexically_normal();
-  const fs::path part = name.is_absolute() ? part_below(working_folder_, usual) : name;
-  if (part.empty()) return usual.string();
-  if (is_file(usual)) {
-    const fs::path beside = (others_.front() / part).lexically_normal();
-    std::error_code error;
-    if (!is_warned_ && is_file(beside) && !fs::equivalent(usual, beside, error) && !error) {
-      log_warning("{}: {} is used, although {} exists, too", scene_.string(), usual.string(),
-                  beside.string());
-      is_warned_ = true;
+fs::path file_in(const fs::path& folder, const fs::path& part) {
+  return (folder / part).lexically_normal();
+}
+
+Paths candidates_of(const fs::path& working_folder, const fs::path& scene_folder) {
+  Paths folders{working_folder};
+  fs::path folder = scene_folder;
+  for (int above = 0; above <= kFoldersAboveScene && !folder.empty(); ++above) {
+    if (std::ranges::find(folders, folder) == folders.end()) folders.push_back(folder);
+    if (folder == folder.parent_path()) break;
+    folder = folder.parent_path();
+  }
+  return folders;
+}
+
+// The first folder that has the most files; the first folder if none has any.
+fs::path fullest(std::span<const fs::path> folders, std::span<const fs::path> parts) {
+  fs::path best = folders.front();
+  std::ptrdiff_t most = 0;
+  for (const fs::path& folder : folders) {
+    const auto count = std::ranges::count_if(
+        parts, [&](const fs::path& part) { return is_on_disk(file_in(folder, part)); });
+    if (count > most) best = folder;
+    most = std::max(most, count);
+    if (most == std::ssize(parts)) break;
+  }
+  return best;
+}
+
+// Warns of the first file that `others` have, too, and that is not the same file.
+void warn_of_others(const fs::path& scene, const fs::path& folder, std::span<const fs::path> others,
+                    std::span<const fs::path> parts) {
+  for (const fs::path& part : parts)
+    for (const fs::path& other_folder : others) {
+      const fs::path used = file_in(folder, part), other = file_in(other_folder, part);
+      std::error_code error;
+      if (used == other || !is_on_disk(other) || !is_on_disk(used)) continue;
+      if (fs::equivalent(used, other, error) || error) continue;
+      return log_warning("{}: {} is used, although {} exists, too", scene.string(), used.string(),
+                         other.string());
     }
-    return usual.string();
+}
+
+}  // namespace
+
+std::vector<std::string> find_files_of_scene(const fs::path& working_folder, const fs::path& scene,
+                                             const std::vector<std::string>& names,
+                                             std::string_view what) {
+  Paths parts;
+  for (const std::string& name : names)
+    if (fs::path part = relative_part(name, working_folder); !part.empty())
+      parts.push_back(std::move(part));
+  const fs::path scene_folder = fs::absolute(scene).lexically_normal().parent_path();
+  const fs::path folder = fullest(candidates_of(working_folder, scene_folder), parts);
+  if (folder != working_folder)
+    log_info("{}: the paths of its {} start at {}", scene.string(), what, folder.string());
+  warn_of_others(scene, folder, Paths{working_folder, scene_folder}, parts);
+  std::vector<std::string> files;
+  for (const std::string& name : names) {
+    const fs::path part = relative_part(name, working_folder);
+    files.push_back(part.empty() ? fs::path(name).lexically_normal().string()
+                                 : file_in(folder, part).string());
   }
-  for (const fs::path& folder : others_) {
-    const fs::path found = (folder / part).lexically_normal();
-    if (!is_file(found)) continue;
-    if (!is_told_)
-      log_info("{}: the paths of its images start at {}", scene_.string(), folder.string());
-    is_told_ = true;
-    found_in_ = folder;
-    return found.string();
-  }
-  return found_in_.empty() ? usual.string() : (found_in_ / part).lexically_normal().string();
+  return files;
 }
 
 }  // namespace axial::io

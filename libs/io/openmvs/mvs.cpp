@@ -84,10 +84,28 @@ CameraModel camera_model(const MvsCamera& camera, const fs::path& image, const s
   return model;
 }
 
-std::string resolved_path(std::string name, ImageFolders& folders, const std::string& where) {
+// The name of a file, with '/' between its folders.
+std::string with_slashes(std::string name, const std::string& where) {
   if (name.find('\0') != std::string::npos) fail("{} contains a NUL", where);
   std::ranges::replace(name, '\\', '/');
-  return folders.find(name);
+  return name;
+}
+
+// The paths of the files of each image.
+struct ImagePaths {
+  std::vector<std::string> images, masks;
+};
+
+ImagePaths find_paths(const MvsFile& mvs, const fs::path& working_folder, const fs::path& scene) {
+  ImagePaths names;
+  for (std::size_t i = 0; i < mvs.images.size(); ++i) {
+    const std::string where = fmt::format("{}: images[{}]", scene.string(), i);
+    if (mvs.images[i].name.empty()) fail("{}.name is empty", where);
+    names.images.push_back(with_slashes(mvs.images[i].name, where + ".name"));
+    names.masks.push_back(with_slashes(mvs.images[i].mask_name, where + ".maskName"));
+  }
+  return {find_files_of_scene(working_folder, scene, names.images, "images"),
+          find_files_of_scene(working_folder, scene, names.masks, "masks")};
 }
 
 template <class T>
@@ -125,15 +143,13 @@ void check_scores(const MvsImage& record, std::size_t index, std::size_t images,
   }
 }
 
-SceneImage scene_image(const MvsFile& mvs, std::size_t index, ImageFolders& folders,
+SceneImage scene_image(const MvsFile& mvs, std::size_t index, const ImagePaths& paths,
                        const std::string& file) {
   const MvsImage& record = mvs.images[index];
   const std::string where = fmt::format("{}: images[{}]", file, index);
   SceneImage image;
-  if (record.name.empty()) fail("{}.name is empty", where);
-  image.path = resolved_path(record.name, folders, where + ".name");
-  if (!record.mask_name.empty())
-    image.mask_path = resolved_path(record.mask_name, folders, where + ".maskName");
+  image.path = paths.images[index];
+  image.mask_path = paths.masks[index];
   image.id = record.id == kNoId ? static_cast<std::uint32_t>(index) : record.id;
   set_camera_and_pose(record, mvs, where, image);
   check_scores(record, index, mvs.images.size(), where);
@@ -288,9 +304,9 @@ Scene read_mvs(const fs::path& path, const fs::path& working_folder) {
     fail("{}: has {} images, at least 2 are needed", file, mvs.images.size());
   check_points(mvs, file);
   Scene scene;
-  ImageFolders folders(absolute_folder(working_folder), path);
+  const ImagePaths paths = find_paths(mvs, absolute_folder(working_folder), path);
   for (std::size_t i = 0; i < mvs.images.size(); ++i)
-    scene.images.push_back(scene_image(mvs, i, folders, file));
+    scene.images.push_back(scene_image(mvs, i, paths, file));
   require_unique_ids(scene, file);
   warn_of_normalised_cameras(scene, mvs, file);
   scene.points = std::move(mvs.points);

@@ -8,11 +8,12 @@
 
 namespace axial::io {
 
-// Reads a scene. Relative paths of images and masks in the file start at `working_folder` (empty:
-// the current folder). A file that is not there is searched for in the folder of the scene, and
-// then in the folders above it. The log states such a folder. Warns if both the working folder and
-// the folder of the scene have a file and the two files are different. All paths in the result are
-// absolute. Ports are not part of the format (see
+// Reads a scene. All relative paths of images in the file start at one folder: at `working_folder`
+// (empty: the current folder), at the folder of the scene, or at one of the three folders above it.
+// It is the first of these folders that has all images, or else the first that has the most. The
+// log states a folder that is not the working folder. Paths of masks start at a folder that is
+// found in the same way. Warns if the working folder or the folder of the scene has another file of
+// the same name. All paths in the result are absolute. Ports are not part of the format (see
 // housing.h). If a camera is stored without a resolution (normalised K), the resolution is read
 // from the header of the image file, and a warning states the principal point that is assumed.
 //

@@ -80,7 +80,7 @@ void parse_property(TextLine& line, std::vector<PlyElement>& elements) {
 void parse_comment(TextLine line, PlyHeader& header) {
   if (line.empty()) return;
   const std::string_view kind = line.word("comment");
-  if (kind == "TextureFile") header.texture_files.emplace_back(line.rest());
+  if (kind == "TextureFile") header.texture_files.emplace_back(line.file_name());
   if (kind != "geo_offset") return;
   if (header.geo_offset) fail("{}: second geo_offset", line.where());
   Eigen::Vector3d& offset = header.geo_offset.emplace();

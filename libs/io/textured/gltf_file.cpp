@@ -179,7 +179,10 @@ GltfData GltfFile::data_of(const std::string& uri, const GltfObject& owner) cons
   const std::size_t colon = uri.find(':');
   if (colon != std::string::npos && colon > 1 && colon < uri.find('/'))
     owner.refuse(fmt::format("is at {}, but only files are read", uri));
-  return {file_of_uri(path_.parent_path(), uri), {}};
+  GltfData data{file_of_uri(path_.parent_path(), uri), {}};
+  if (data.path.native().find('\0') != std::string::npos)
+    owner.refuse("names a file with a NUL byte");
+  return data;
 }
 
 std::vector<fs::path> GltfFile::buffer_files() const {

@@ -111,7 +111,7 @@ void read_map(TextLine line, const fs::path& folder, ObjMaterial& material) {
     line = after;
     read_map_option(*option, line, material);
   }
-  std::string name(line.rest());
+  std::string name(line.file_name());
   if (name.empty()) fail("{}: map_Kd names no file", line.where());
   const bool quoted = name.size() > 2 && name.front() == '"' && name.back() == '"';
   if (quoted && !file_beside(folder, name)) name = name.substr(1, name.size() - 2);

@@ -112,7 +112,7 @@ class ObjReader {
         const auto u = values.number<double>("u");
         uv_.emplace_back(u, values.empty() ? 0.0 : values.number<double>("v"));
       } else if (textured_ && key == "mtllib") {
-        read_material_files(line->rest());
+        read_material_files(line->file_name());
       } else if (key == "surf" || key == "call") {
         fail("{}: '{}' is not supported", line->where(), key);
       }
@@ -299,7 +299,7 @@ bool is_textured_obj(const fs::path& path) {
     const std::string_view key = line->word("key");
     coordinates |= key == "vt";
     if (key != "mtllib") continue;
-    for (const fs::path& mtl : material_files(path.parent_path(), line->rest()))
+    for (const fs::path& mtl : material_files(path.parent_path(), line->file_name()))
       for (const ObjMaterial& material : read_obj_materials(mtl))
         textures |= material.texture.has_value();
   }
@@ -331,7 +331,7 @@ TextureFiles texture_files_of_obj(const fs::path& path) {
   TextureFiles files;
   while (std::optional<TextLine> line = lines.next()) {
     if (line->word("key") != "mtllib") continue;
-    for (const fs::path& mtl : material_files(path.parent_path(), line->rest())) {
+    for (const fs::path& mtl : material_files(path.parent_path(), line->file_name())) {
       files.materials.push_back(mtl);
       std::error_code ignored;
       if (!fs::exists(mtl, ignored)) continue;

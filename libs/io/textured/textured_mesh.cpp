@@ -80,6 +80,13 @@ std::vector<std::string> names_of(std::span<const fs::path> files) {
   return names;
 }
 
+// The end of the name of a texture. Formats share no names: each format may be written by a run of
+// its own, with other textures.
+std::string end_of_texture(TexturedFormat format, std::size_t texture) {
+  if (format == TexturedFormat::obj) return fmt::format("_material_{}_map_Kd.png", texture);
+  return fmt::format("{}{}.png", format == TexturedFormat::gltf ? "_gltf" : "", texture);
+}
+
 // The number of files before the textures.
 std::size_t files_before_textures(TexturedFormat format) {
   return format == TexturedFormat::ply || format == TexturedFormat::glb ? 1 : 2;
@@ -102,7 +109,7 @@ std::vector<fs::path> textured_files(const fs::path& path, TexturedFormat format
   if (format == TexturedFormat::obj) files.push_back(beside(".mtl"));
   if (format == TexturedFormat::gltf) files.push_back(beside(".bin"));
   if (format == TexturedFormat::glb) return files;
-  for (std::size_t k = 0; k < textures; ++k) files.push_back(beside(fmt::format("{}.png", k)));
+  for (std::size_t k = 0; k < textures; ++k) files.push_back(beside(end_of_texture(format, k)));
   return files;
 }
 

@@ -26,8 +26,10 @@ std::optional<TexturedFormat> textured_format(std::string_view name);
 // textures. The first path is that of the mesh. The extension of `path`, if it has one, is replaced
 // by the extension of the format. The second path is the .mtl file of an OBJ or the .bin file of a
 // glTF. The paths of the textures follow: for "dir/scene.ply" they are "dir/scene0.png",
-// "dir/scene1.png" and so on, as in OpenMVS. A GLB is a single file that contains its textures: the
-// result has one path.
+// "dir/scene1.png" and so on, as in OpenMVS, for an OBJ "dir/scene_material_0_map_Kd.png" and so
+// on, and for a glTF "dir/scene_gltf0.png" and so on. So the files of one format never replace
+// those of another format. A GLB is a single file that contains its textures: the result has one
+// path.
 std::vector<std::filesystem::path> textured_files(const std::filesystem::path& path,
                                                   TexturedFormat format, std::size_t textures);
 
@@ -75,6 +77,10 @@ std::uint64_t bytes_to_write_textured(TexturedFormat format, std::uint64_t verti
 // (PLY: the edge of the texture; OBJ: repeated, or the edge with -clamp; glTF: the sampler). A face
 // that extends over several copies of its picture gets a texture with these copies, up to 2^26
 // pixels in all. Errors name the file.
+//
+// The names of pictures, MTL files and buffers start at the folder of the file that has the names.
+// Absolute names and names with ".." are read, too, because people keep textures in other folders.
+// Nothing is written to these places. Error for a name with a NUL byte.
 
 // A PLY has its textures in comments TextureFile, and coordinates at the corners of faces (the list
 // texcoord, and texnumber for the number of the texture) or at vertices (texture_u and texture_v, u

@@ -61,6 +61,13 @@ class TextLine {
   // The part that is not read yet, without blanks around it.
   std::string_view rest() const { return trimmed(text_); }
 
+  // The same as the name of a file. Error for a NUL byte, at which the system would end the name.
+  std::string_view file_name() const {
+    if (text_.find('\0') != std::string_view::npos)
+      fail("{}: the name of a file contains a NUL byte", where());
+    return rest();
+  }
+
  private:
   std::string_view text_;
   const std::string* file_;

@@ -4,34 +4,30 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "private/only_for_io.h"
 
 namespace axial::io {
 
-// Relative paths start at the working folder. That is OpenMVS's rule. If there is no such file,
-// they start at the folder of the scene, or at the nearest folder above it in which the file
-// exists: the scene was written in this working folder, or was moved together with its photographs.
-class ImageFolders {
- public:
-  // `working_folder`: absolute and normal.
-  ImageFolders(const std::filesystem::path& working_folder, const std::filesystem::path& scene);
+// The folders above the scene's folder in which files are searched for.
+inline constexpr int kFoldersAboveScene = 3;
 
-  // Returns the absolute path of the file with a name in the scene. If there is no such file in any
-  // of the folders, the path starts at the folder of the file that was found before outside of the
-  // working folder, or at the working folder if there is no such file. For an absolute name, the
-  // other folders are searched for the part of the name below the working folder, if there is such
-  // a part. The log states once that another folder than the working folder is used. Warns once if
-  // both the working folder and the scene's folder have the file and the two files are different:
-  // those of the working folder are used.
-  std::string find(const std::filesystem::path& name);
-
- private:
-  std::filesystem::path working_folder_, scene_;
-  std::filesystem::path found_in_;  // the folder of others_ in which the last file was found
-  std::vector<std::filesystem::path> others_;  // the scene's folder, and the folders above it
-  bool is_told_ = false, is_warned_ = false;
-};
+// Returns the absolute path of each file that `names` names; an empty path for an empty name. All
+// relative names start at one folder. Candidates are the working folder, as in OpenMVS, then the
+// folder of the scene, then the kFoldersAboveScene folders above it, from the nearest: the scene
+// was written in this working folder, or was moved together with its photographs. The folder is the
+// first candidate that has all files, otherwise the first that has the most, and the working folder
+// if no candidate has any. An absolute name below the working folder counts as a relative name; all
+// other absolute names are returned as they are.
+//
+// `working_folder`: absolute and normal. `what`: the files in plural, for messages. The log states
+// a folder that is not the working folder. Warns once if the working folder or the folder of the
+// scene has another file of the same name than the one that is returned.
+std::vector<std::string> find_files_of_scene(const std::filesystem::path& working_folder,
+                                             const std::filesystem::path& scene,
+                                             const std::vector<std::string>& names,
+                                             std::string_view what);
 
 }  // namespace axial::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "other_tiles.h"
+#include "base/other_tiles.h"
 
 #include <fmt/format.h>
 
@@ -7,13 +7,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "base/log.h"
 #include "base/output_name.h"
 #include "base/parse_number.h"
 
-namespace axial::apps {
+namespace axial {
 namespace {
 
 namespace fs = std::filesystem;
@@ -30,22 +29,26 @@ std::optional<std::size_t> tiles_in_name(std::string_view name, const std::strin
 
 }  // namespace
 
-void warn_of_other_tiles(const fs::path& output, std::size_t tiles) {
+std::vector<fs::path> other_tiles(const fs::path& output, std::size_t tiles) {
   const std::string stem = without_known_extension(output).filename().string();
-  std::vector<std::string> others;
+  std::vector<fs::path> others;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(output.parent_path(), ignored)) {
     const fs::path name = entry.path().filename();
     if (known_extension(name).empty()) continue;
     const auto count = tiles_in_name(without_known_extension(name).string(), stem);
-    if (count && *count != tiles) others.push_back(name.string());
+    if (count && *count != tiles) others.push_back(output.parent_path() / name);
   }
-  if (others.empty()) return;
   std::ranges::sort(others);
-  log_warning(
-      "{}{}: of another number of tiles, not renewed by this run: remove what is not needed",
-      (output.parent_path() / others.front()).string(),
-      others.size() == 1 ? "" : fmt::format(" and {} more", others.size() - 1));
+  return others;
 }
 
-}  // namespace axial::apps
+void warn_of_other_tiles(const std::vector<fs::path>& tiles) {
+  if (tiles.empty()) return;
+  log_warning(
+      "{}{}: of another number of tiles, not renewed by this run: remove what is not needed",
+      tiles.front().string(),
+      tiles.size() == 1 ? "" : fmt::format(" and {} more", tiles.size() - 1));
+}
+
+}  // namespace axial
