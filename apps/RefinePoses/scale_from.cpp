@@ -150,6 +150,8 @@ std::vector<std::string> drop_outliers(io::ImagePositions& positions, const pose
   if (const MirroredFit mirrored = mirrored_fit(centres.model, centres.known); mirrored.better)
     fail("{}: {}", file.string(), mirrored_line(mirrored));
   const RobustSimilarity fit = robust_similarity(centres.model, centres.known);
+  if (fit.off_line)
+    no_use("{}: {}", file.string(), off_line_sentence(fit, centres.names[*fit.off_line]));
   for (std::size_t k = fit.outliers.size(); k-- > 0;)
     positions.found.erase(positions.found.begin() + static_cast<std::ptrdiff_t>(fit.outliers[k]));
   std::vector<std::string> lines = outlier_lines(fit, centres.names);
