@@ -165,8 +165,12 @@ std::vector<std::string> read_positions(const std::filesystem::path& file, doubl
                                         const pose::Bundle& bundle,
                                         std::vector<pose::KnownPosition>& known) {
   std::vector<std::string> names;
-  for (const pose::BundleImage& image : bundle.images) names.push_back(image.name);
-  io::ImagePositions positions = io::positions_of_images(file, names, "the model");
+  std::vector<Eigen::Vector3d> centres;
+  for (const pose::BundleImage& image : bundle.images) {
+    names.push_back(image.name);
+    centres.push_back(image.pose.centre);
+  }
+  io::ImagePositions positions = io::positions_of_images(file, names, centres, "the model");
   if (positions.found.size() < 3)
     no_use("{}: contains {} positions of images of the model, at least 3 are needed{}",
            file.string(), positions.found.size(),
