@@ -66,6 +66,7 @@ Mesh clean_given(const io::SceneWithCameras& scene, const Options& options, bool
   memory_of(options).require(io::bytes_to_read_mesh(options.mesh),
                              "reading " + options.mesh.string());
   const Mesh mesh = io::read_mesh_of_scene(scene.frame, options.mesh);
+  belong::check_surface(scene.scene, belong::shape_of(mesh), {options.mesh, options.scene.scene});
   keep = keep || !mesh.unseen.empty();
   memory_of(options).require(mesh::bytes_to_clean(mesh.vertices.size()),
                              "cleaning " + options.mesh.string());

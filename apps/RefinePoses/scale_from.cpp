@@ -150,6 +150,8 @@ std::vector<std::string> drop_outliers(io::ImagePositions& positions, const pose
   if (const MirroredFit mirrored = mirrored_fit(centres.model, centres.known); mirrored.better)
     fail("{}: {}", file.string(), mirrored_line(mirrored));
   const RobustSimilarity fit = robust_similarity(centres.model, centres.known);
+  if (fit.off_line)
+    no_use("{}: {}", file.string(), off_line_sentence(fit, centres.names[*fit.off_line]));
   for (std::size_t k = fit.outliers.size(); k-- > 0;)
     positions.found.erase(positions.found.begin() + static_cast<std::ptrdiff_t>(fit.outliers[k]));
   std::vector<std::string> lines = outlier_lines(fit, centres.names);
@@ -163,8 +165,12 @@ std::vector<std::string> read_positions(const std::filesystem::path& file, doubl
                                         const pose::Bundle& bundle,
                                         std::vector<pose::KnownPosition>& known) {
   std::vector<std::string> names;
-  for (const pose::BundleImage& image : bundle.images) names.push_back(image.name);
-  io::ImagePositions positions = io::positions_of_images(file, names, "the model");
+  std::vector<Eigen::Vector3d> centres;
+  for (const pose::BundleImage& image : bundle.images) {
+    names.push_back(image.name);
+    centres.push_back(image.pose.centre);
+  }
+  io::ImagePositions positions = io::positions_of_images(file, names, centres, "the model");
   if (positions.found.size() < 3)
     no_use("{}: contains {} positions of images of the model, at least 3 are needed{}",
            file.string(), positions.found.size(),

@@ -55,12 +55,14 @@ struct Known {
 Known read_known(const Options& options, const Scene& scene) {
   std::vector<std::string> paths;
   std::vector<std::size_t> calibrated;
+  std::vector<Eigen::Vector3d> centres;
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
     if (!scene.images[i].calibrated) continue;
     calibrated.push_back(i);
     paths.push_back(scene.images[i].path);
+    centres.push_back(scene.images[i].pose.centre);
   }
-  const auto read = io::positions_of_images(options.positions, paths, "the scene");
+  const auto read = io::positions_of_images(options.positions, paths, centres, "the scene");
   for (const std::string& line : read.notes) log_info("{}", line);
   for (const std::string& line : read.absent) log_warning("{}", line);
   Known known;

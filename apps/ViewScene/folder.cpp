@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "base/base64.h"
 #include "base/error.h"
 #include "base/subprocess.h"
 #include "io/bytes/json.h"
 #include "io/bytes/written_files.h"
-#include "view/base64.h"
 
 namespace axial::apps {
 namespace {
@@ -101,7 +101,7 @@ std::string DataFiles::add(std::string_view bytes) {
   room_ -= bytes.size();
   std::string name = fmt::format("data/{}-{:04}.js", kind_, files_ - 1);
   write(staging_ / name,
-        fmt::format("axialData.put(\"{}\",{},\"{}\");\n", kind_, entries_++, view::base64(bytes)),
+        fmt::format("axialData.put(\"{}\",{},\"{}\");\n", kind_, entries_++, base64(bytes)),
         std::ios::app);
   return name;
 }

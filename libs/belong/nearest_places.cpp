@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <unordered_map>
 
@@ -33,6 +34,8 @@ class PlaceGrid {
     std::iota(all_.begin(), all_.end(), 0u);
     for (const std::uint32_t i : all_) {
       const Cell cell = cell_of(places[i]);
+      low_ = low_.cwiseMin(places[i]);
+      high_ = high_.cwiseMax(places[i]);
       for (std::int64_t x = -1; x <= 1; ++x)
         for (std::int64_t y = -1; y <= 1; ++y)
           for (std::int64_t z = -1; z <= 1; ++z)
@@ -44,10 +47,11 @@ class PlaceGrid {
   // times.
   template <class Visit>
   void near(const Eigen::Vector3d& low, const Eigen::Vector3d& high, const Visit& visit) const {
+    if (((low - high_).array() > reach_).any() || ((low_ - high).array() > reach_).any()) return;
     const Cell first = cell_of(low), last = cell_of(high);
     double cells = 1;
     for (std::size_t k = 0; k < 3; ++k) cells *= static_cast<double>(last[k] - first[k] + 1);
-    if (cells > kMostCells) return visit_all(all_, visit);
+    if (cells > static_cast<double>(all_.size())) return visit_all(all_, visit);
     for (std::int64_t x = first[0]; x <= last[0]; ++x)
       for (std::int64_t y = first[1]; y <= last[1]; ++y)
         for (std::int64_t z = first[2]; z <= last[2]; ++z)
@@ -56,8 +60,6 @@ class PlaceGrid {
   }
 
  private:
-  static constexpr double kMostCells = 1000;
-
   template <class Visit>
   static void visit_all(const std::vector<std::uint32_t>& places, const Visit& visit) {
     for (const std::uint32_t place : places) visit(place);
@@ -73,6 +75,8 @@ class PlaceGrid {
   }
 
   double reach_;
+  Eigen::Vector3d low_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector3d high_ = -low_;  // with low_, the box of the places
   std::vector<std::uint32_t> all_;
   std::unordered_map<Cell, std::vector<std::uint32_t>, CellHash> cells_;
 };

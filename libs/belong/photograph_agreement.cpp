@@ -5,6 +5,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "base/order_statistics.h"
+
 namespace axial::belong {
 namespace {
 
@@ -31,12 +33,6 @@ double correlation(const std::vector<std::array<double, 2>>& pairs) {
   }
   const double scale = std::sqrt(variance[0] * variance[1]);
   return scale > 0 ? covariance / scale : 0;
-}
-
-float middle_of(std::vector<float> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace
@@ -106,7 +102,7 @@ std::vector<PhotographFacts> PhotographSamples::facts() const {
         if (other != i) others.push_back(detail);
       if (!others.empty())
         pairs.push_back({static_cast<double>(sample.detail),
-                         static_cast<double>(middle_of(std::move(others)))});
+                         static_cast<double>(upper_median(std::move(others)))});
     }
     facts.samples = pairs.size();
     facts.agreement = correlation(pairs);

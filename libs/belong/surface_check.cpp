@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "belong/surface_check.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <string>
@@ -39,25 +40,53 @@ bool appears(const Shape& shape, std::size_t count, std::span<const std::uint32_
   return false;
 }
 
-// True if one of a few rays of the images meets the mesh.
-bool is_met(const Shape& shape, std::span<const std::uint32_t> images, const Scene& scene,
-            Cameras& cameras) {
+// A line of sight [frame of the scene].
+struct Sight {
+  Eigen::Vector3d origin, direction;
+};
+
+// A few rays of the images.
+std::vector<Sight> sights_of(std::span<const std::uint32_t> images, const Scene& scene,
+                             Cameras& cameras) {
   constexpr int kColumns = 12, kRows = 9;
-  const geometry::Surface surface(Mesh{{shape.vertices.begin(), shape.vertices.end()},
-                                       {},
-                                       {shape.faces.begin(), shape.faces.end()}});
+  std::vector<Sight> sights;
   for (const std::uint32_t image : images) {
     const SceneImage& view = scene.images[image];
     for (int k = 0; k < kColumns * kRows; ++k) {
       const Eigen::Vector2d pixel((k % kColumns + 0.5) * view.camera.width / kColumns - 0.5,
                                   (k / kColumns + 0.5) * view.camera.height / kRows - 0.5);
       const auto ray = cameras.of(image).ray(pixel);
-      if (surface.first_hit(view.pose.to_world(ray.origin),
-                            view.pose.rotation.transpose() * ray.direction))
-        return true;
+      sights.push_back(
+          {view.pose.to_world(ray.origin), view.pose.rotation.transpose() * ray.direction});
     }
   }
-  return false;
+  return sights;
+}
+
+// Whether a line of sight may meet a sphere.
+bool may_meet(const Sight& sight, const Eigen::Vector3d& centre, double radius) {
+  const Eigen::Vector3d to_centre = centre - sight.origin;
+  const double along = std::max(0.0, to_centre.dot(sight.direction.normalized()));
+  const double distance = (to_centre - along * sight.direction.normalized()).norm();
+  return !(distance > 1.001 * radius);
+}
+
+// True if one of a few rays of the images meets the mesh.
+bool is_met(const Shape& shape, std::span<const std::uint32_t> images, const Scene& scene,
+            Cameras& cameras) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& vertex : shape.vertices) box.extend(vertex.cast<double>());
+  std::vector<Sight> sights = sights_of(images, scene, cameras);
+  std::erase_if(sights, [&](const Sight& sight) {
+    return !may_meet(sight, box.center(), box.diagonal().norm() / 2);
+  });
+  if (sights.empty()) return false;  // without the time to divide the mesh
+  const geometry::Surface surface(Mesh{{shape.vertices.begin(), shape.vertices.end()},
+                                       {},
+                                       {shape.faces.begin(), shape.faces.end()}});
+  return std::ranges::any_of(sights, [&](const Sight& sight) {
+    return surface.first_hit(sight.origin, sight.direction).has_value();
+  });
 }
 
 // True if a camera looks at a part of the shape, which others may hide.
@@ -111,7 +140,7 @@ std::vector<Misfit> misfits() {
 // The text of the difference with which the shape fits; empty: none is known.
 std::string known_misfit(SurfaceMeasure& measure, const Shape& shape, double largest) {
   for (const Misfit& misfit : misfits())
-    if (measure.changed_distance(shape, misfit.change, misfit.undo, misfit.scale) <= largest)
+    if (measure.fits_changed(shape, misfit.change, misfit.undo, misfit.scale, largest))
       return fmt::format("the {} is {}", word_for(shape), misfit.text);
   return {};
 }

@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "base/order_statistics.h"
 #include "belong/coverage.h"
 #include "belong/nearest_places.h"
 
@@ -13,18 +14,7 @@ namespace axial::belong {
 namespace {
 
 constexpr std::size_t kMostPlaces = 2000, kMostSights = 6, kMostImages = 16, kMostParts = 20'000;
-
-double quantile_of(std::vector<double> values, double part) {
-  if (values.empty()) return 0;
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-double median_of_values(std::vector<double> values) {
-  return quantile_of(std::move(values), 0.5);
-}
+constexpr std::size_t kFewPlaces = 100;  // tell that a shape does not fit
 
 Eigen::Vector3d unchanged(const Eigen::Vector3d& place) {
   return place;
@@ -40,7 +30,7 @@ SurfaceMeasure::SurfaceMeasure(const Scene& scene)
   for (const SparsePlace& place : places_)
     if (const double width = footprint(place); std::isfinite(width) && width > 0)
       footprints.push_back(width);
-  reach_ = 1.5 * kFarthest * quantile_of(footprints, 0.75);
+  reach_ = 1.5 * kFarthest * lower_quantile(std::move(footprints), 0.75);
 }
 
 // The width of a pixel at a sparse point, in the first image that sees it [unit of the scene].
@@ -62,19 +52,21 @@ double SurfaceMeasure::distance_in_images(const SparsePlace& place, const Eigen:
   return largest < 0 ? kFarthest : std::min(largest, kFarthest);
 }
 
-double SurfaceMeasure::median_distance(const Shape& shape, const std::vector<std::size_t>& of,
-                                       const PlaceChange& change, const PlaceChange& undo,
-                                       double scale) {
-  if (of.empty() || !(reach_ > 0) || !std::isfinite(reach_ * scale)) return kFarthest;
+// The distances [px] of the places `of` from the shape; as for fits_changed().
+std::vector<double> SurfaceMeasure::distances(const Shape& shape,
+                                              const std::vector<std::size_t>& of,
+                                              const PlaceChange& change, const PlaceChange& undo,
+                                              double scale) {
+  if (!(reach_ > 0) || !std::isfinite(reach_ * scale))
+    return std::vector<double>(of.size(), kFarthest);
   std::vector<Eigen::Vector3d> at;
   for (const std::size_t i : of) at.push_back(change(places_[i].position));
   const auto nearest = nearest_places(shape, at, reach_ * scale);
-  std::vector<double> distances;
-  for (std::size_t k = 0; k < of.size(); ++k) {
-    distances.push_back(nearest[k] ? distance_in_images(places_[of[k]], undo(*nearest[k]))
-                                   : kFarthest);
-  }
-  return median_of_values(std::move(distances));
+  std::vector<double> result;
+  for (std::size_t k = 0; k < of.size(); ++k)
+    result.push_back(nearest[k] ? distance_in_images(places_[of[k]], undo(*nearest[k]))
+                                : kFarthest);
+  return result;
 }
 
 SurfaceFit SurfaceMeasure::fit(const Shape& shape) {
@@ -100,16 +92,18 @@ SurfaceFit SurfaceMeasure::fit(const Shape& shape) {
   for (std::size_t i = 0; i < places_.size(); ++i)
     if (counts[i]) counted.push_back(i);
   result.counted = counted.size();
-  result.spacing = median_of_values(std::move(spacings));
-  if (!counted.empty()) result.distance = median_distance(shape, counted, unchanged, unchanged, 1);
+  result.spacing = lower_quantile(std::move(spacings), 0.5);
+  result.distance = lower_quantile(distances(shape, counted, unchanged, unchanged, 1), 0.5);
   return result;
 }
 
-double SurfaceMeasure::changed_distance(const Shape& shape, const PlaceChange& change,
-                                        const PlaceChange& undo, double scale) {
-  std::vector<std::size_t> all;
-  for (std::size_t i = 0; i < places_.size(); ++i) all.push_back(i);
-  return median_distance(shape, all, change, undo, scale);
+bool SurfaceMeasure::fits_changed(const Shape& shape, const PlaceChange& change,
+                                  const PlaceChange& undo, double scale, double largest) {
+  // If half of all places fit, it is next to impossible that fewer than a fifth of these fit.
+  const std::vector<std::size_t> some = spread_indices(places_.size(), kFewPlaces);
+  if (lower_quantile(distances(shape, some, change, undo, scale), 0.2) > largest) return false;
+  const std::vector<std::size_t> all = spread_indices(places_.size(), places_.size());
+  return lower_quantile(distances(shape, all, change, undo, scale), 0.5) <= largest;
 }
 
 }  // namespace axial::belong

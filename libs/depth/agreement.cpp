@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/order_statistics.h"
+
 namespace axial::depth {
 namespace {
 
@@ -120,13 +122,6 @@ void compare_point(const MapWithCamera& map, const Eigen::Vector3d& point,
                            cell_of(map, pixel)});
 }
 
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 struct CellMedian {
   double size;   // |median|
   double error;  // standard error of the median, for a normal distribution
@@ -134,9 +129,9 @@ struct CellMedian {
 
 CellMedian median_of_cell(std::vector<double>& values) {
   const auto count = static_cast<double>(values.size());
-  const double middle = median(values);
+  const double middle = upper_median(values);
   for (double& value : values) value = std::abs(value - middle);
-  return {std::abs(middle), 1.2533 * 1.4826 * median(values) / std::sqrt(count)};
+  return {std::abs(middle), 1.2533 * 1.4826 * upper_median(values) / std::sqrt(count)};
 }
 
 void add_cells(const MapAgreement& map, std::vector<double>& sizes, std::vector<double>& ratios) {
@@ -182,13 +177,13 @@ Agreement summarise(std::span<const MapAgreement> maps) {
     consistent += map.consistent;
   }
   result.points = pixels.size();
-  result.share = median(shares);
-  result.pixels = median(pixels);
+  result.share = upper_median(shares);
+  result.pixels = upper_median(pixels);
   result.cells = sizes.size();
   result.scored = scores.size();
-  result.score = median(scores);
-  result.systematic = median(sizes);
-  result.significance = median(ratios);
+  result.score = upper_median(scores);
+  result.systematic = upper_median(sizes);
+  result.significance = upper_median(ratios);
   if (result.asked > 0)
     result.consistent = static_cast<double>(consistent) / static_cast<double>(result.asked);
   return result;

@@ -30,7 +30,8 @@ void check_spread(const Eigen::Matrix3Xd& points, const char* which) {
 }  // namespace
 
 RobustSimilarity fit_positions(std::span<const Eigen::Vector3d> source,
-                               std::span<const Eigen::Vector3d> target, bool with_scale) {
+                               std::span<const Eigen::Vector3d> target, bool with_scale,
+                               std::span<const std::string> names) {
   if (source.size() != target.size())
     fail("{} positions cannot be fitted to {}", source.size(), target.size());
   if (source.size() < 3)
@@ -41,7 +42,11 @@ RobustSimilarity fit_positions(std::span<const Eigen::Vector3d> source,
   check_spread(to, "reference");
   if (const MirroredFit mirrored = mirrored_fit(from, to, with_scale); mirrored.better)
     fail("{}", mirrored_line(mirrored));
-  return robust_similarity(from, to, with_scale);
+  RobustSimilarity fit = robust_similarity(from, to, with_scale);
+  if (const auto point = fit.off_line)
+    fail("{}", off_line_sentence(
+                   fit, names.empty() ? fmt::format("number {}", *point + 1) : names[*point]));
+  return fit;
 }
 
 Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
@@ -66,7 +71,7 @@ CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapMode
   if (source.size() < 3)
     fail("the models have {} images with the same name, a similarity needs at least 3",
          source.size());
-  RobustSimilarity fit = fit_positions(source, target);
+  RobustSimilarity fit = fit_positions(source, target, true, result.names);
   result.similarity = fit.similarity;
   result.outliers = outlier_lines(fit, result.names);
   double sum = 0, sum_of_fitting = 0;

@@ -24,9 +24,12 @@ using axial::Similarity;
 // points, if a coordinate is not finite, or if `source` or `target` lies on one line, because the
 // rotation about this line would be unknown. Points lie on one line if their relative_width() is at
 // most kLineWidth (scene/decompositions.h). Error that names the usual causes if the mirror image
-// of `source` fits much better (MirroredFit::better).
+// of `source` fits much better (MirroredFit::better). Error that names the position that alone is
+// off a line and does not fit (RobustSimilarity::off_line). `names`: of all positions, for this
+// error; empty: numbers from 1.
 RobustSimilarity fit_positions(std::span<const Eigen::Vector3d> source,
-                               std::span<const Eigen::Vector3d> target, bool with_scale = true);
+                               std::span<const Eigen::Vector3d> target, bool with_scale = true,
+                               std::span<const std::string> names = {});
 
 // The similarity of fit_positions().
 Similarity fit_similarity(std::span<const Eigen::Vector3d> source,

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "evaluate/sampling.h"
 #include "scene/decompositions.h"
@@ -45,9 +46,7 @@ double median_distance(const std::vector<Pair>& pairs) {
   std::vector<double> distances;
   distances.reserve(pairs.size());
   for (const Pair& pair : pairs) distances.push_back(pair.distance);
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  return upper_median(std::move(distances));
 }
 
 struct Extent {

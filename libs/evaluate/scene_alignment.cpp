@@ -94,7 +94,9 @@ SceneAlignment align_to_positions(const Scene& scene, std::span<const std::size_
                                   std::span<const Eigen::Vector3d> positions, bool with_scale) {
   std::vector<Eigen::Vector3d> centres;
   for (const std::size_t i : images) centres.push_back(scene.images[i].pose.centre);
-  const RobustSimilarity fit = fit_positions(centres, positions, with_scale);
+  std::vector<std::string> names;
+  for (const std::size_t i : images) names.push_back(scene.images[i].path);
+  const RobustSimilarity fit = fit_positions(centres, positions, with_scale, names);
   SceneAlignment result;
   result.similarity = fit.similarity;
   result.images = images.size() - fit.outliers.size();
@@ -102,8 +104,6 @@ SceneAlignment align_to_positions(const Scene& scene, std::span<const std::size_
   for (std::size_t k = 0; k < centres.size(); ++k)
     if (!std::ranges::binary_search(fit.outliers, k))
       result.largest = std::max(result.largest, fit.distances[k]);
-  std::vector<std::string> names;
-  for (const std::size_t i : images) names.push_back(scene.images[i].path);
   result.outliers = outlier_lines(fit, names);
   return result;
 }

@@ -5,6 +5,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "base/base64.h"
+
 namespace axial::picture {
 namespace {
 
@@ -34,25 +36,12 @@ const char* name(Anchor anchor) {
   return anchor == Anchor::kStart ? "start" : anchor == Anchor::kMiddle ? "middle" : "end";
 }
 
-std::string base64(const std::vector<unsigned char>& bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t k = 0; k < bytes.size(); k += 3) {
-    const auto byte = [&](std::size_t i) { return i < bytes.size() ? bytes[i] : 0u; };
-    const unsigned word = byte(k) << 16 | byte(k + 1) << 8 | byte(k + 2);
-    for (unsigned digit = 0; digit < 4; ++digit)
-      text += k + digit <= bytes.size() ? kDigits[word >> (18 - 6 * digit) & 63] : '=';
-  }
-  return text;
-}
-
 }  // namespace
 
 std::string png_in_base64(const cv::Mat3b& bgr) {
   std::vector<unsigned char> png;
   cv::imencode(".png", bgr, png);
-  return base64(png);
+  return base64({reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
 Svg::Svg(double width, double height) : width_(width), height_(height) {}

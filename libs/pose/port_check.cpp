@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/order_statistics.h"
 #include "pose/refine.h"
 #include "pose/tracks.h"
 
@@ -69,13 +70,6 @@ std::optional<PortValues> first_port(const Bundle& bundle) {
   return {};
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 std::string times(double factor) {
   return factor > 1 ? fmt::format("{:.6g} times too large", factor)
                     : fmt::format("{:.6g} times too small", 1 / factor);
@@ -117,14 +111,15 @@ double track_residual(Bundle bundle) {
   std::vector<double> errors = reprojection_errors(bundle);
   for (double& error : errors)
     if (!std::isfinite(error)) error = std::numeric_limits<double>::infinity();
-  return median(std::move(errors));
+  return upper_median(std::move(errors));
 }
 
 PortCheck check_ports(const Bundle& bundle, std::span<const double> claimed_errors) {
   PortCheck check;
   check.points = bundle.points.size();
   check.observations = bundle.observations.size();
-  check.noise = std::max(kLeastNoise, median({claimed_errors.begin(), claimed_errors.end()}));
+  check.noise = std::max(
+      kLeastNoise, upper_median(std::vector<double>(claimed_errors.begin(), claimed_errors.end())));
   check.residual = track_residual(bundle);
   check.in_air =
       first_port(bundle) ? track_residual(changed(bundle, {Of::port_left_out})) : check.residual;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/order_statistics.h"
 #include "pose/known.h"
 #include "scene/decompositions.h"
 
@@ -138,9 +139,7 @@ double median_distance(const Bundle& bundle) {
         (bundle.points[observation.point].position - bundle.images[observation.image].pose.centre)
             .norm());
   if (distances.empty()) fail("the model has no observations");
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  return upper_median(std::move(distances));
 }
 
 void scale_places(Bundle& bundle, double scale) {

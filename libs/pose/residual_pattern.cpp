@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/order_statistics.h"
 #include "pose/residuals.h"
 
 namespace axial::pose {
@@ -25,9 +26,7 @@ int columns_for(std::size_t count, int width, int height, int most) {
 double clip(Errors& errors, int axis) {
   std::vector<double> values;
   for (const Eigen::Vector2d& error : errors) values.push_back(error[axis]);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  const double median = *middle;
+  const double median = upper_median(values);
   for (double& value : values) value -= median;
   const double deviation = robust_deviation(std::move(values));
   for (Eigen::Vector2d& error : errors)

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 
 namespace axial::pose {
@@ -50,9 +51,7 @@ Eigen::Vector<double, 6> pose_step(std::span<const ObservationTerm> terms) {
 double robust_deviation(std::vector<double> values) {
   if (values.empty()) return 0;
   for (double& value : values) value = std::abs(value);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return 1.4826 * *middle;
+  return 1.4826 * upper_median(std::move(values));
 }
 
 ObservationTerm observation_term(const AnyCamera<double>& camera, const Pose& pose,

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "io/images/image.h"
 
@@ -194,9 +195,7 @@ std::optional<double> TrackPictures::agreement(const Bundle& bundle, bool at_obs
     }
   }
   if (values.size() < kLeastPoints) return {};
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
+  return upper_median(std::move(values));
 }
 
 }  // namespace axial::pose

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "base/order_statistics.h"
+
 namespace axial {
 namespace {
 
@@ -17,9 +19,7 @@ Eigen::Vector3d median(std::span<const Eigen::Vector3d> places) {
   std::vector<double> values(places.size());
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     std::ranges::transform(places, values.begin(), [&](const auto& x) { return x[axis]; });
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    result[axis] = *middle;
+    result[axis] = upper_median(values);
   }
   return result;
 }

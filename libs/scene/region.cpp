@@ -6,14 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/order_statistics.h"
+
 namespace axial {
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // The point at which the cameras look.
 struct ViewingCentre {
@@ -28,7 +24,7 @@ ViewingCentre viewing_centre(const std::vector<const Pose*>& poses) {
     std::vector<double> values;
     values.reserve(poses.size());
     for (const Pose* pose : poses) values.push_back(pose->centre(axis));
-    middle(axis) = median(std::move(values));
+    middle(axis) = upper_median(std::move(values));
   }
   std::vector<double> distances;
   for (const Pose* pose : poses) {
@@ -38,7 +34,8 @@ ViewingCentre viewing_centre(const std::vector<const Pose*>& poses) {
   ViewingCentre viewed;
   viewed.agreement = direction.norm() / static_cast<double>(poses.size());
   const double ahead = std::tan(std::asin(std::min(viewed.agreement, 0.999)));
-  viewed.centre = middle + ahead * median(std::move(distances)) * direction.stableNormalized();
+  viewed.centre =
+      middle + ahead * upper_median(std::move(distances)) * direction.stableNormalized();
   for (const Pose* pose : poses) {
     viewed.radius = std::max(viewed.radius, (pose->centre - viewed.centre).norm());
   }

@@ -10,6 +10,8 @@
 #include <limits>
 #include <numeric>
 
+#include "base/order_statistics.h"
+
 namespace axial {
 namespace {
 
@@ -43,11 +45,13 @@ class Pairs {
     }
     return distances;
   }
+  Eigen::Matrix3Xd sources(const Indices& part) const { return columns_of(from_, part); }
   Eigen::Matrix3Xd targets(const Indices& part) const { return columns_of(to_, part); }
   bool on_line(const Indices& part) const {
-    return !(relative_width(columns_of(from_, part)) > kLineWidth) ||
-           !(relative_width(columns_of(to_, part)) > kLineWidth);
+    return !(relative_width(sources(part)) > kLineWidth) ||
+           !(relative_width(targets(part)) > kLineWidth);
   }
+  const Eigen::Matrix3Xd& from() const { return from_; }
   int unknowns() const { return with_scale_ ? 7 : 6; }
   const Eigen::Matrix3Xd& to() const { return to_; }
 
@@ -102,10 +106,8 @@ Indices best_part(const Pairs& pairs, std::size_t number) {
   for_triples(pairs.count(), [&](const Indices& triple) {
     if (pairs.on_line(triple)) return;
     const Similarity trial = pairs.fit(triple);
-    std::vector<double> distances = pairs.distances(trial);
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(number - 1);
-    std::nth_element(distances.begin(), middle, distances.end());
-    if (*middle < least) least = *middle, best = trial;
+    const double farthest = value_at_place(pairs.distances(trial), number - 1);
+    if (farthest < least) least = farthest, best = trial;
   });
   if (!std::isfinite(least)) return {};
   Indices part = nearest(pairs.distances(best), number);
@@ -130,10 +132,11 @@ class Limits {
     const Eigen::Matrix3Xd places = pairs.targets(part);
     mean_ = places.rowwise().mean();
     const Eigen::Matrix3Xd centred = places.colwise() - mean_;
-    const SymmetricEigen3 moments(Eigen::Matrix3d(centred * centred.transpose()),
-                                  Eigen::EigenvaluesOnly);
-    // A turn about the longest axis is the least certain: the second moment determines it.
-    second_moment_ = moments.eigenvalues()(1);
+    const SymmetricEigen3 moments(Eigen::Matrix3d(centred * centred.transpose()));
+    // A turn about the longest axis is the least certain: the second moment determines it. About a
+    // line every turn is allowed.
+    line_ = moments.eigenvectors().col(2);
+    second_moment_ = moments.eigenvalues()(pairs.on_line(part) ? 2 : 1);
     count_ = static_cast<double>(part.size());
     extent_ = std::sqrt(moments.eigenvalues()(2) / count_);
     double squares = 0;
@@ -148,8 +151,14 @@ class Limits {
     return std::max(sigmas_ * sigma_ * std::sqrt(1 + uncertainty), 1e-4 * extent_);
   }
 
+  // The place along the longest axis of the points, and the distance from this axis.
+  Eigen::Vector2d along_line(const Eigen::Vector3d& place) const {
+    const double along = line_.dot(place - mean_);
+    return {along, (place - mean_ - along * line_).norm()};
+  }
+
  private:
-  Eigen::Vector3d mean_;
+  Eigen::Vector3d mean_, line_;
   double second_moment_ = 0, count_ = 0, extent_ = 0, sigma_ = 0, sigmas_ = 0;
 };
 
@@ -180,6 +189,45 @@ Indices inliers_of(const Pairs& pairs) {
   return all;  // no stable division
 }
 
+// The index of the one point without which the others are on a line.
+std::optional<std::size_t> alone_off_line(const Eigen::Matrix3Xd& points) {
+  const double count = static_cast<double>(points.cols());
+  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
+  const Eigen::Matrix3d all = centred * centred.transpose();
+  std::optional<std::size_t> alone;
+  double least = kLineWidth;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Matrix3d others =
+        all - count / (count - 1) * centred.col(i) * centred.col(i).transpose();
+    const Eigen::Vector3d moments =
+        SymmetricEigen3(others, Eigen::EigenvaluesOnly).eigenvalues().cwiseMax(0);
+    const double width = std::sqrt(moments(1) / moments(2));
+    if (width < least) least = width, alone = static_cast<std::size_t>(i);
+  }
+  return alone;
+}
+
+// The point of `part` that does not fit the others, wherever they turn about the line on which they
+// are.
+std::optional<std::size_t> misfit_off_line(const Pairs& pairs, const Indices& part) {
+  if (part.size() < 4) return {};
+  for (const Eigen::Matrix3Xd& points : {pairs.sources(part), pairs.targets(part)}) {
+    const std::optional<std::size_t> alone = alone_off_line(points);
+    if (!alone) continue;
+    const std::size_t point = part[*alone];
+    Indices others = part;
+    std::erase(others, point);
+    if (!pairs.on_line(others)) continue;
+    const Similarity fit = pairs.fit(others);
+    const Limits limits(pairs, others, pairs.distances(fit));
+    const auto column = static_cast<Eigen::Index>(point);
+    const Eigen::Vector3d moved = fit(pairs.from().col(column)), target = pairs.to().col(column);
+    if ((limits.along_line(moved) - limits.along_line(target)).norm() > limits.at(target))
+      return point;
+  }
+  return {};
+}
+
 double rms_of(const std::vector<double>& distances, const Indices& part) {
   double squares = 0;
   for (const std::size_t i : part) squares += distances[i] * distances[i];
@@ -196,6 +244,7 @@ RobustSimilarity robust_similarity(const Eigen::Matrix3Xd& from, const Eigen::Ma
   result.similarity = inliers.size() == pairs.count() ? pairs.fit() : pairs.fit(inliers);
   result.distances = pairs.distances(result.similarity);
   result.rms = rms_of(result.distances, inliers);
+  result.off_line = misfit_off_line(pairs, inliers);
   for (std::size_t i = 0; i < pairs.count(); ++i)
     if (!std::ranges::binary_search(inliers, i)) result.outliers.push_back(i);
   return result;
@@ -215,6 +264,14 @@ MirroredFit mirrored_fit(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& t
   fit.better = fit.rms > factor * fit.mirrored_rms && fit.rms > 1e-6 * extent;
   fit.alike = !fit.better && fit.mirrored_rms < 1.5 * fit.rms + 1e-6 * extent;
   return fit;
+}
+
+std::string off_line_sentence(const RobustSimilarity& fit, const std::string& name) {
+  return fmt::format(
+      "the position of {} does not fit the {} others that are used, and these lie on one line, "
+      "about "
+      "which the rotation of the cameras is not determined",
+      name, fit.distances.size() - fit.outliers.size() - 1);
 }
 
 std::string mirrored_line(const MirroredFit& fit) {

@@ -18,6 +18,9 @@ struct RobustSimilarity {
   std::vector<std::size_t> outliers;  // columns that do not fit the others, in ascending order
   std::vector<double> distances;      // of each moved point from its partner [unit of `to`]
   double rms = 0;                     // root mean square of the distances without the outliers
+  // The column that does not fit, although the other points are on a line. Without this point no
+  // similarity is determined, so the point is no outlier, but counts in the fit, which is useless.
+  std::optional<std::size_t> off_line = {};
 };
 
 // The least-squares similarity (best_similarity) of the points without the outliers. Points and
@@ -49,6 +52,10 @@ struct MirroredFit {
 // Fits `from` and its mirror image to `to`. Arguments as for robust_similarity().
 MirroredFit mirrored_fit(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
                          bool with_scale = true);
+
+// The sentence of the error for RobustSimilarity::off_line. `name`: of this point. Precondition:
+// off_line is set.
+std::string off_line_sentence(const RobustSimilarity& fit, const std::string& name);
 
 // The two usual causes of positions that fit the mirror image of the cameras, as the end of an
 // error or a warning.

@@ -10,7 +10,8 @@ import tempfile
 
 from programs import ProgramTest, grey_png, main, read, run, write
 
-SIZE = ("--views", "5", "--width", "320", "--height", "240")
+SIZE = ("--views", "5", "--width", "320", "--height", "240", "--samples", "1")
+TINY = ("--views", "1", "--width", "16", "--height", "12")  # where only the mesh matters
 OFFSET = (534000.0, 3378500.0, 0.0)
 
 
@@ -31,21 +32,25 @@ class Belonging(ProgramTest):
     def setUpClass(cls):
         cls.kept = tempfile.TemporaryDirectory(prefix="axial_")
         cls.addClassCleanup(cls.kept.cleanup)
-        for preset, name, coarseness in (("closeup", "one", "4"), ("reef", "other", "4")):
-            folder = os.path.join(cls.kept.name, name)
-            said = run("SimulateUnderwater", "--preset", preset, "--coarseness", coarseness, *SIZE,
-                       "--medium", "water", "--truth", "0", "-o", folder)
-            assert said.returncode == 0, said.stderr
-            said = run("InterfaceCOLMAP", "-i", folder + "/sparse", "--image-folder", folder + "/water",
-                       "--housing", folder + "/housing.json", "-o", folder + "/scene.mvs")
-            assert said.returncode == 0, said.stderr
+        folder = cls.simulated("one", "closeup", "6", SIZE)
+        said = run("InterfaceCOLMAP", "-i", folder + "/sparse", "--image-folder", folder + "/water",
+                   "--housing", folder + "/housing.json", "-o", folder + "/scene.mvs")
+        assert said.returncode == 0, said.stderr
+
+    @classmethod
+    def simulated(cls, name, preset, coarseness, size):
+        """The folder of a simulated scene."""
+        folder = os.path.join(cls.kept.name, name)
+        said = run("SimulateUnderwater", "--preset", preset, "--coarseness", coarseness, *size,
+                   "--medium", "water", "--truth", "0", "-o", folder)
+        assert said.returncode == 0, said.stderr
+        return folder
 
     def setUp(self):
         super().setUp()
         self.one = self.path("one")
         shutil.copytree(os.path.join(self.kept.name, "one"), self.one)
         self.mesh = self.path("one", "mesh.ply")
-        self.other = os.path.join(self.kept.name, "other", "mesh.ply")
         os.mkdir(self.path("empty"))
 
     def of_scene(self, program, *arguments):
@@ -70,21 +75,24 @@ class Belonging(ProgramTest):
 
 
 class Shapes(Belonging):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.other = os.path.join(cls.simulated("other", "reef", "4", TINY), "mesh.ply")
+
     def test_the_mesh_of_the_scene_raises_no_alarm(self):
         for command in self.with_mesh(self.mesh):
             self.assertEqual(self.warnings(*command, "--max-threads", "1"), [], command)
 
     def test_the_mesh_of_another_survey_is_refused(self):
-        # One program, because the check tries all units and axes, which takes seconds. The test of
-        # millimetres runs all programs.
+        # One program, because the check tries all units and axes. The test of millimetres runs all
+        # programs.
         self.refuses("other/mesh.ply: does not belong to " + self.path("one", "scene.mvs"),
                      *self.of_scene("MapSurface", "-m", self.other, "-o", "new"))
 
     def test_the_cloud_of_another_survey_is_refused(self):
         # The limit of a cloud is the distance between its points, so the cloud is denser than the mesh.
-        self.succeeds("SimulateUnderwater", "--preset", "reef", "--coarseness", "2", *SIZE, "--medium", "water",
-                      "--truth", "0", "-o", self.path("dense"))
-        cloud = self.path("dense", "mesh.ply")
+        cloud = os.path.join(self.simulated("dense", "reef", "2", TINY), "mesh.ply")
         for command in (self.of_scene("ReconstructMesh", "-p", cloud, "-o", "new.ply"),
                         self.of_scene("ViewScene", "-p", cloud, "--report", "page")):
             self.refuses("dense/mesh.ply: does not belong to", *command)
@@ -92,6 +100,11 @@ class Shapes(Belonging):
     def test_a_survey_with_the_scene_of_another_one_is_not_compared(self):
         self.refuses("other/mesh.ply: does not belong to", "CompareSurveys", "-i", self.other, "--other",
                      self.other, "--scene", self.path("one", "scene.mvs"), "-o", self.path("new"))
+
+    def test_a_given_mesh_is_checked_before_it_is_cleaned(self):
+        clean = lambda mesh: self.of_scene("ReconstructMesh", "--mesh-file", mesh, "-o", "clean.ply")
+        self.assertEqual(self.warnings(*clean(self.mesh)), [])
+        self.refuses("other/mesh.ply: does not belong to", *clean(self.other))
 
     def test_millimetres_are_named(self):
         large = self.path("large.ply")

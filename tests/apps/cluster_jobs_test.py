@@ -49,7 +49,8 @@ class Jobs(InFolder):
         lens = self.write("cameras.txt", "1 PINHOLE 640 480 500 500 320 240\n")
         plan = {"parts": 3, "stages": ["photometric", "geometric1"], "threads": 16,
                 "per_part": {stage: {"cpu_seconds": 9600, "memory_mb": 1000}
-                             for stage in ("photometric", "geometric1")}}
+                             for stage in ("photometric", "geometric1")},
+                "fusion": {"cpu_seconds": 9600, "memory_mb": 1000}}
         self.write(jobs.PLAN, json.dumps(plan))
         given = {"output": str(self.folder), "images": "images", "lens": str(lens), "housing": "h",
                  "scale_from": "", "refine": "", "matcher": "exhaustive", "vocabulary": "",
@@ -64,6 +65,7 @@ class Jobs(InFolder):
     def test_programs_that_plan_their_memory_keep_to_their_job(self):
         self.assertEqual(one_step.limits_of(["bin/CompareSurveys", "--max-threads=1"], 2, 1000),
                          ["--max-memory", "800"])
+        self.assertEqual(one_step.limits_of(["bin/MapSurface", "--max-t", "1", "--max-mem=9"], 2, 1000), [])
         self.assertEqual(one_step.limits_of(["bin/ViewScene"], 2, 1000), [])
 
     def test_only_fusion_exports(self):
@@ -90,6 +92,7 @@ class Jobs(InFolder):
 
     def test_options_that_contradict_tiles_are_refused(self):
         for tiles, name, words in ((2, "mesh", "-d 4 --decimate=0.5"), (2, "densify", "--fusion-tiles 3"),
+                                   (2, "mesh", "--dec 0.5"), (2, "densify", "--fusion-t=3"),
                                    (1, "texture", "--tiles 4"), (1, "densify", "--tile 1/2")):
             given = argparse.Namespace(**{"densify": "", "mesh": "", "texture": "", name: words},
                                        tiles=tiles)
@@ -108,6 +111,25 @@ class Jobs(InFolder):
     def minutes(self, name, **options):
         job = self.survey(**options).job(name)
         return [job.resources["runtime"](None, attempt) for attempt in (1, 2)]
+
+    def test_a_damaged_plan_is_made_again(self):
+        survey, plan = self.survey(), self.folder / jobs.PLAN
+        whole, record = json.loads(plan.read_text()), self.folder / jobs.done("plan")
+        record.write_text("{}")
+        self.assertEqual(self.said_by(cluster.forget_damaged_plan, self.folder), "")
+        self.assertTrue(record.exists())
+        for content in ("", "{", "[]", "{}", "\xff", json.dumps({**whole, "parts": 0}),
+                        json.dumps({**whole, "fusion": {"memory_mb": "much"}}),
+                        json.dumps({**whole, "per_part": {}}), None):
+            record.write_text("{}")
+            plan.unlink(missing_ok=True) if content is None else plan.write_text(content)
+            wildcards = argparse.Namespace(stage="photometric", part="whole")
+            with self.assertRaisesRegex(Failure, "steps/plan.json: is damaged"):
+                survey.depth.resources["mem_mb"](wildcards, 1)
+            self.assertEqual(self.said_by(cluster.forget_damaged_plan, self.folder),
+                             f"{plan}: is damaged or missing, and is made again\n")
+            self.assertFalse(plan.exists() or record.exists())
+        self.assertEqual(self.said_by(cluster.forget_damaged_plan, self.folder), "")
 
     def test_time_of_matching_grows_with_the_pairs(self):
         # 499,500 pairs of 0.9 s on 16 processors, twice: 936.6 minutes

@@ -225,6 +225,18 @@ class Positions(InFolder):
         found = positions.read(file, names)
         for name, metres in ((names[1], 11.13), (names[2], 6.52)):  # of the ellipsoid WGS 84
             self.assertAlmostEqual(math.dist(found[names[0]], found[name]), metres, delta=0.05)
+        degrees = found
+        rows = "IMG_1,16.5,54.25,-3\nIMG_2,16.5,54.2501,-3\nc d.tif,16.5001,54.25,-3\n"
+        for header in ("name,x (deg),y (deg),z", "name,GPS_Longitude,GPS_Latitude [°],z",
+                       "# CoordinateSystem: GEOGCS[]", "EPSG:4326"):
+            self.write("degrees.csv", f"{header}\n{rows}")
+            self.assertEqual(positions.read(file, names), degrees)
+        self.write("degrees.csv", rows)
+        with self.assertRaisesRegex(Failure, "degrees.csv: no line states whether the positions are metres or "
+                                    "degrees; name the columns in a first line such as label,x .m.,y .m.,z"):
+            positions.read(file, names)
+        self.write("degrees.csv", f"label,x (m),y (m),z (m)\n{rows}")
+        self.assertEqual(positions.read(file, names)[names[1]], (16.5, 54.2501, -3))
         with self.assertRaisesRegex(Failure, "positions.csv:1: 'IMG_1' can be a/IMG_1.JPG or b/IMG_1.JPG"):
             positions.read(self.write("positions.csv", "IMG_1 1 2 3\n"), ["a/IMG_1.JPG", "b/IMG_1.JPG"])
 

@@ -307,6 +307,20 @@ class Masks(FilesCase):
         for program in ("TextureMesh", "MapSurface", "DensifyPointCloud"):
             self.assertNotIn(f"{self.folder}/out/colmap_masks", self.command_of(program))
 
+    def test_shortened_options_are_those_of_the_program(self):
+        """The begin of an option is the option, as the programs read it."""
+        self.put("masks/0.png")
+        self.succeeds("--masks", "masks", "--texture=--mask-pa other --ignore-mask=3")
+        for program in ("TextureMesh", "MapSurface"):
+            self.assertNotIn(f"{self.folder}/out/colmap_masks", self.command_of(program))
+        self.assertIn("--mask-path other --ignore-mask-label=3", self.command_of("MapSurface"))
+        self.succeeds("--texture=--mask-pa other", "--map=--mask-p mine")
+        self.assertIn("--mask-p mine", self.command_of("MapSurface"))
+        self.assertNotIn("other", self.command_of("MapSurface"))
+        self.put("before.ply")
+        self.succeeds("--earlier", "before.ply", "--compare=--al none")
+        self.assertNotIn("--align", self.command_of("CompareSurveys"))
+
     def test_changed_masks_begin_anew(self):
         mask = self.put("masks/0.png")
         options = ["--masks", "masks"]

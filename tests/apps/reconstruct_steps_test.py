@@ -198,6 +198,10 @@ class WithStandIns(StandIns):
             said = self.ended("--earlier", earlier, "--without", "map,page")
             self.assertEqual(said.returncode, 1)
             self.assertIn("this run replaces this mesh; give another --output", said.stderr)
+        # A copy beside it that no step writes is an earlier survey.
+        (self.folder / "out" / "scene_dense_backup.ply").touch()
+        said = self.ended("--earlier", "out/scene_dense_backup.ply", "--without", "map,page")
+        self.assertEqual((said.returncode, said.stderr), (0, ""))
 
     def test_maps_of_other_options_do_not_keep_old_errors(self):
         self.assertEqual(self.ended().returncode, 0)

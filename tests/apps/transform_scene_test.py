@@ -223,6 +223,14 @@ class Positions(Transform):
         moved_to = Mvs(self.at("moved.mvs")).poses[0][3]
         self.near([a + b for a, b in zip(moved_to, offset)], (597730.71, 6012375.70, 0), 0.05)
 
+    def test_degrees_without_a_unit(self):
+        lines = [f"{name} {16.5 + x / 65200!r} {54.25 + y / 111300!r} {z}"
+                 for name, (x, y, z) in zip(self.names, self.known)]
+        said = self.align(lines)
+        self.assertIn("known.csv: no line states the unit of the positions; they fit the cameras as longitude "
+                      "and latitude in degrees", said)
+        self.assertIn("WGS 84 / UTM zone 33N (EPSG:32633)", said)
+
     def test_a_wrong_position_is_named_and_left_out(self):
         wrong = [list(place) for place in self.known]
         wrong[2][0] += 50
@@ -232,6 +240,16 @@ class Positions(Transform):
                           + self.path(self.names[2]) + " is 50 m from where the 7 positions", said)
             self.assertIn("Aligned by 7 known positions: scale 1,", said)
             self.check(self.known)
+
+    def test_a_wrong_position_off_the_line_of_the_others_is_named(self):
+        line = [(float(k), 0.0 if k != 3 else 1.0, 0.001 * (k % 2)) for k in range(len(self.names))]
+        write(self.scene, tiny_scene.mvs([self.path(name) for name in self.names], centres=line))
+        said = self.align(self.lines(line))
+        self.assertIn("Aligned by 8 known positions: scale 1,", said)
+        wrong = [(x + 20 * (y > 0), y + 30 * (y > 0), z) for x, y, z in line]
+        write(self.path("known.csv"), "\n".join(self.lines(wrong)))
+        self.refused("known.csv: the position of " + self.path(self.names[3]) + " does not fit the 7 others that "
+                     "are used, and these lie on one line", "--positions", self.path("known.csv"))
 
     def test_a_left_handed_frame_is_refused(self):
         for known in ([(x, y, -z) for x, y, z in self.known], [(y, x, z) for x, y, z in self.known]):

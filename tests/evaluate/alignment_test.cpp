@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "evaluate/shapes.h"
+#include "support/error_of.h"
 
 namespace axial::evaluate {
 namespace {
@@ -70,6 +71,19 @@ TEST(FitSimilarity, RefusesTooFewAndCollinear) {
   EXPECT_THROW(fit_similarity(spread, line), Error);
   const std::vector<Eigen::Vector3d> same(4, {1, 2, 3});
   EXPECT_THROW(fit_similarity(same, spread), Error);
+}
+
+TEST(FitSimilarity, RefusesAWrongPositionOffTheLineOfTheOthers) {
+  std::vector<Eigen::Vector3d> source, target;
+  for (int i = 0; i < 6; ++i) source.emplace_back(i, i == 2 ? 1 : 0, 1e-3 * (i % 2));
+  target = source;
+  EXPECT_NO_THROW(fit_similarity(source, target));
+  target[2] += Eigen::Vector3d(30, 20, 0);
+  EXPECT_THAT(test::error_of([&] { fit_similarity(source, target); }),
+              testing::HasSubstr("the position of number 3 does not fit the 5 others"));
+  const std::vector<std::string> names{"a", "b", "c.jpg", "d", "e", "f"};
+  EXPECT_THAT(test::error_of([&] { fit_positions(source, target, true, names); }),
+              testing::HasSubstr("the position of c.jpg does not fit"));
 }
 
 TEST(Similarity, ComposesAsItsMatrix) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <opencv2/imgcodecs.hpp>
 
+#include "base/base64.h"
 #include "io/gltf_builder.h"
 #include "io/openmvs/point_source.h"
 #include "io/ply/ply_property.h"
@@ -185,13 +186,12 @@ bool write_glb_seed(const fs::path& file, int variant) {
   cv::imencode(".png", cv::Mat3b(2, 2, cv::Vec3b(1, 2, 3)), png);
   const std::string bytes(png.begin(), png.end());
   const nlohmann::json transform{{"offset", {0.5, 0}}, {"rotation", 0.5}, {"scale", {2, 1}}};
-  builder.material({{"uri", "data:image/png;base64," + test::base64(bytes)}},
+  builder.material({{"uri", "data:image/png;base64," + base64(bytes)}},
                    {{"extensions", {{"KHR_texture_transform", transform}}}}, {{"wrapS", 33648}});
   builder.json["meshes"][0]["primitives"][0]["material"] = 0;
   if (variant == 2) write_atomically(file, builder.glb());
   // The reader tells a .gltf by its content.
-  if (variant == 3)
-    write_atomically(file, builder.gltf("data:;base64," + test::base64(builder.buffer)));
+  if (variant == 3) write_atomically(file, builder.gltf("data:;base64," + base64(builder.buffer)));
   return variant < 4;
 }
 

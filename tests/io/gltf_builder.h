@@ -99,20 +99,4 @@ class GltfBuilder {
 // A right triangle, and its corners.
 inline const std::vector<float> kTriangle{0, 0, 0, 1, 0, 0, 0, 1, 0};
 
-inline std::string base64(std::string_view bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k <= bytes.size() && (k < 2 || i + k - 1 < bytes.size())
-                  ? kDigits[bits >> (18 - 6 * k) & 63]
-                  : '=';
-  }
-  return text;
-}
-
 }  // namespace axial::test

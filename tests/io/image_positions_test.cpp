@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
 #include "io/wrong_input.h"
 
 namespace axial::io {
@@ -45,10 +49,14 @@ TEST(ImageLabels, MayBeWrittenAsOtherProgramsDo) {
   EXPECT_TRUE(labels.find("DSC 3.txt").images.empty());
 }
 
-ImagePositions read(const std::string& text, const std::vector<std::string>& paths) {
+using Places = std::vector<Eigen::Vector3d>;
+
+ImagePositions read(const std::string& text, const std::vector<std::string>& paths,
+                    Places centres = {}) {
   const fs::path folder = test::empty_folder();
   test::put(folder / "known.csv", text);
-  ImagePositions positions = positions_of_images(folder / "known.csv", paths, "the scene");
+  centres.resize(paths.size(), Eigen::Vector3d::Zero());
+  ImagePositions positions = positions_of_images(folder / "known.csv", paths, centres, "the scene");
   fs::remove_all(folder);
   return positions;
 }
@@ -72,6 +80,125 @@ TEST(ImagePositions, AmbiguousLabelsNameBothImages) {
               HasSubstr("known.csv:2: 'a' can be a.jpg or a.png; give more of its path"));
   EXPECT_THAT(error_of([] { read("A.jpg 1 2 3\nA.JPG 1 2 3\n", {"a.jpg"}); }),
               HasSubstr("known.csv:2: A.JPG occurs twice"));
+}
+
+// The cameras of a survey: `size` wide, with depths that vary by a tenth of it, in another frame
+// and unit than the positions of the file.
+class UnstatedUnit : public ::testing::Test {
+ protected:
+  // Positions of a survey about the origin [m].
+  static Places survey(const Eigen::Vector3d& size) {
+    Places places;
+    for (int i = 0; i < 12; ++i) {
+      const double t = i;
+      places.push_back(size.cwiseProduct(
+          Eigen::Vector3d(std::sin(2.1 * t), std::cos(3.7 * t + 0.4), std::sin(1.3 * t * t + 1))));
+    }
+    return places;
+  }
+  // The same places in the frame of a model without a scale.
+  static Places seen(const Places& places) {
+    const Eigen::Matrix3d turn =
+        Eigen::Quaterniond(0.5, 0.1, -0.7, 0.5).normalized().toRotationMatrix();
+    Places centres;
+    for (const Eigen::Vector3d& place : places)
+      centres.push_back(0.37 * (turn * place) + Eigen::Vector3d(3, -2, 8));
+    return centres;
+  }
+  static std::string lines(const Places& places) {
+    std::string text;
+    for (std::size_t i = 0; i < places.size(); ++i)
+      text += fmt::format("{}.jpg {:.9f} {:.9f} {:.6f}\n", i, places[i].x(), places[i].y(),
+                          places[i].z());
+    return text;
+  }
+  // Degrees of metres about a place, by the radii of curvature of the ellipsoid there.
+  static Places degrees(const Places& places, double longitude, double latitude) {
+    const double phi = latitude * std::numbers::pi / 180, e2 = 0.00669437999;
+    const double w = std::sqrt(1 - e2 * std::sin(phi) * std::sin(phi));
+    const double north = 6378137 * (1 - e2) / (w * w * w), east = 6378137 / w * std::cos(phi);
+    Places result;
+    for (const Eigen::Vector3d& place : places)
+      result.emplace_back(longitude + place.x() / east * 180 / std::numbers::pi,
+                          latitude + place.y() / north * 180 / std::numbers::pi, place.z());
+    return result;
+  }
+  static std::vector<std::string> names(std::size_t count) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < count; ++i) names.push_back(fmt::format("{}.jpg", i));
+    return names;
+  }
+  static ImagePositions read_survey(const Places& written, const Places& metres) {
+    return read(lines(written), names(metres.size()), seen(metres));
+  }
+  static void expect_metres(const ImagePositions& read, const Places& places) {
+    ASSERT_EQ(read.found.size(), places.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+      EXPECT_LT((read.found[i].position - places[i]).norm(), 1e-5) << i;
+  }
+};
+
+TEST_F(UnstatedUnit, IsTheMetreForAVerticalScan) {
+  Places scan = survey({0.003, 0.003, 2});
+  for (Eigen::Vector3d& place : scan) place += Eigen::Vector3d(12.5, 48.25, -3);
+  const ImagePositions read = read_survey(scan, scan);
+  expect_metres(read, scan);
+  EXPECT_THAT(read.notes, ElementsAre(HasSubstr("they fit the cameras as metres")));
+}
+
+TEST_F(UnstatedUnit, IsTheMetreForCloseUps) {
+  Places scan = survey({0.04, 0.03, 0.01});
+  for (Eigen::Vector3d& place : scan) place += Eigen::Vector3d(2, 48.25, -3);
+  expect_metres(read_survey(scan, scan), scan);
+}
+
+TEST_F(UnstatedUnit, IsTheMetreForOrdinaryLocalPositions) {
+  Places places = survey({5, 3, 0.5});
+  for (Eigen::Vector3d& place : places) place += Eigen::Vector3d(10, 20, -3);
+  const ImagePositions read = read_survey(places, places);
+  expect_metres(read, places);
+  EXPECT_TRUE(read.notes.empty());
+}
+
+TEST_F(UnstatedUnit, IsTheDegreeOverAnyDistance) {
+  for (const double size : {5.0, 40.0, 1500.0}) {
+    const Places metres = survey({size, 0.8 * size, 0.002 * size});
+    const ImagePositions read = read_survey(degrees(metres, 16.5, 54.25), metres);
+    ASSERT_EQ(read.found.size(), metres.size());
+    for (std::size_t i = 1; i < metres.size(); ++i)
+      EXPECT_NEAR((read.found[i].position - read.found[0].position).norm(),
+                  (metres[i] - metres[0]).norm(), 1e-3 * size)
+          << size;
+    EXPECT_NEAR(read.found[0].position.x(), 597730 + metres[0].x(), 0.05 * size + 1);
+    EXPECT_THAT(read.notes,
+                ElementsAre(HasSubstr("they fit the cameras as longitude and latitude in degrees"),
+                            HasSubstr("WGS 84 / UTM zone 33N (EPSG:32633)")));
+  }
+}
+
+TEST_F(UnstatedUnit, IsTheDegreeWithTheLatitudeFirst) {
+  const Places metres = survey({30, 20, 2});
+  Places written = degrees(metres, 16.5, 54.25);
+  for (Eigen::Vector3d& place : written) std::swap(place.x(), place.y());
+  const ImagePositions read = read_survey(written, metres);
+  EXPECT_NEAR(read.found.at(0).position.x(), 597730, 40);
+  EXPECT_THAT(read.notes, testing::Contains(HasSubstr("as latitude and longitude in degrees")));
+}
+
+TEST_F(UnstatedUnit, MustBeStatedIfTheCamerasDoNotTell) {
+  // Near the equator, a degree has nearly the same length in all directions. The positions are
+  // noisy.
+  const Places plane = survey({30, 20, 0});
+  Places noisy = plane;
+  for (std::size_t i = 0; i < noisy.size(); ++i)
+    noisy[i] += Eigen::Vector3d(std::sin(7.0 * double(i)), std::cos(9.0 * double(i)), 0);
+  EXPECT_THAT(error_of([&] { read_survey(degrees(noisy, 101.5, 2), plane); }),
+              HasSubstr("known.csv: no line states whether the positions are metres or degrees"));
+  // Cameras that have nothing to do with the positions.
+  const Places other = survey({1, 2, 3});
+  Places shuffled(other.rbegin(), other.rend());
+  EXPECT_THAT(error_of([&] { read_survey(degrees(plane, 16.5, 54.25), shuffled); }),
+              HasSubstr("label,x (m),y (m),z (m) or label,longitude,latitude,altitude"));
 }
 
 }  // namespace

@@ -177,26 +177,57 @@ TEST(Positions, DegreesBecomeMetres) {
             1e-3)
       << odm.positions[0].position.transpose();
   EXPECT_THAT(odm.notes, testing::ElementsAre(HasSubstr("WGS 84 / UTM zone 33N (EPSG:32633)")));
-  // The same by the names of the columns, by Metashape's system, and by the numbers.
+  // The same by the names of the columns and by Metashape's system; by the fit to the cameras:
+  // image_positions_test.cpp.
   for (const char* text :
        {"name,latitude,longitude,altitude\na.jpg,54.25,16.5,-3\nb.jpg,54.2501,16.5001,-4\n",
         "#CoordinateSystem: GEOGCS[\"WGS 84\"]\n#Label,X/Longitude,Y/Latitude,Z/Altitude\n"
-        "a.jpg,16.5,54.25,-3\nb.jpg,16.5001,54.2501,-4\n",
-        "#Label,X/Longitude,Y/Latitude,Z/Altitude\na.jpg,16.5,54.25,-3\nb.jpg,16.5001,54.2501,-4\n"
-        "c.jpg,16.5,54.2501,-4\n"})
+        "a.jpg,16.5,54.25,-3\nb.jpg,16.5001,54.2501,-4\n"})
     EXPECT_EQ(file_with(text).positions.at(0).position, odm.positions[0].position) << text;
   const PositionFile south = file_with("EPSG:4326\na.jpg -178.2 -33.5 0\n");
   EXPECT_LT((south.positions[0].position - Eigen::Vector3d(388534.3400, 6292636.4656, 0)).norm(),
             1e-3)
       << south.positions[0].position.transpose();
 
-  EXPECT_THAT(
-      error_of([] { positions_in("a,54.25,16.5,1\nb,54.2501,16.5001,1\nc,54.2501,16.5,1\n"); }),
-      HasSubstr("nothing says whether the latitude or the longitude is first"));
+  EXPECT_THAT(error_of([] {
+                positions_in("label,x (deg),y (deg),z\na,54.25,16.5,1\nb,54.2501,16.5001,1\n");
+              }),
+              HasSubstr("nothing says whether the latitude or the longitude is first"));
   EXPECT_THAT(error_of([] { positions_in("EPSG:4314\na.jpg 16.5 54.25 1\n"); }),
               HasSubstr("the positions are degrees (EPSG:4314); convert the positions"));
-  // Metres near the origin are metres.
+  EXPECT_THAT(error_of([] { positions_in("label,x (deg),y (deg),z\na,500000,5400000,1\n"); }),
+              HasSubstr("are beyond the longitudes and latitudes of the Earth"));
+}
+
+// Numbers that can be metres or degrees are returned as both.
+TEST(Positions, MayHaveAnyUnitIfNoLineStatesIt) {
+  const auto units_of = [](const std::string& text) {
+    std::vector<std::string> units;
+    for (const PositionReading& reading : file_with(text).as_degrees) units.push_back(reading.unit);
+    return units;
+  };
+  const std::string lonlat = "longitude and latitude in degrees";
+  const std::string latlon = "latitude and longitude in degrees";
+  using testing::ElementsAre, testing::IsEmpty;
+  EXPECT_THAT(units_of("a 54.25 16.5 1\nb 54.29 16.51 1\nc 54.25 16.53 1\n"),
+              ElementsAre(lonlat, latlon));
+  EXPECT_THAT(units_of("a -154.25 16.5 1\nb -154.2501 16.5 1\nc -154.25 16.5001 1\n"),
+              ElementsAre(lonlat));
+  EXPECT_THAT(units_of("#Label,X/Longitude,Y/Latitude,Z/Altitude\na,16.5,54.25,-3\n"
+                       "b,16.5001,54.2501,-4\nc,16.5,54.2501,-4\n"),
+              ElementsAre(lonlat));
+  EXPECT_THAT(units_of("a 88.01 16.5 1\nb 88.02 16.5 1\nc 88.01 16.51 1\n"), ElementsAre(lonlat));
+  for (const char* metres :
+       {"a 88.01 86.5 1\nb 88.02 86.5 1\nc 88.01 86.51 1\n", "a 1 2 3\nb 1.5 2 3\nc 1 2.5 3\n",
+        "a 54.25 16.5 1\nb 54.2501 16.5001 1\n", "a .1 .2 .3\nb .11 .2 .3\nc .1 .21 .3\n",
+        "a 2 2 3\nb 2 2 4\nc 2 2 5\n", "a 400 2 3\nb 400.01 2 4\nc 400 2 5\n",
+        "#Label,X/Longitude,Y/Latitude,Z\na,400,2,3\nb,400.01,2,4\nc,400,2,5\n",
+        "label,x (m),y (m),z (m)\na,2,2,3\nb,2.01,2,4\nc,2,2,5\n",
+        "EPSG:32633\na 2 2 3\nb 2.01 2 4\nc 2 2 5\n"})
+    EXPECT_THAT(units_of(metres), IsEmpty()) << metres;
+  // `positions` are the metres.
   EXPECT_EQ(told(file_with("a 1 2 3\nb 1.5 2 3\nc 1 2.5 3\n")), "a=(1,2,3)b=(1.5,2,3)c=(1,2.5,3)");
+  EXPECT_EQ(told(file_with("a 2 2 3\nb 2.01 2 4\nc 2 2 5\n")), "a=(2,2,3)b=(2.01,2,4)c=(2,2,5)");
 }
 
 TEST(Positions, NameOtherFiles) {

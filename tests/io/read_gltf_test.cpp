@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.h"
+#include "base/base64.h"
 #include "io/gltf_builder.h"
 #include "io/images/image.h"
 #include "io/openmvs/point_source.h"
@@ -365,8 +366,8 @@ TEST_F(ReadGltfTest, PicturesAndBuffersInAnyPlace) {
   expect_picture(written(builder.gltf("the%20data.bin"), "m.gltf"));
   EXPECT_THAT(files_of_mesh(folder_ / "m.gltf"),
               ElementsAre(folder_ / "m.gltf", folder_ / "the data.bin", folder_ / "a tree+1.png"));
-  builder.json["images"][0] = {{"uri", "data:image/png;base64," + test::base64(bytes)}};
-  std::string escaped = test::base64(builder.buffer);
+  builder.json["images"][0] = {{"uri", "data:image/png;base64," + base64(bytes)}};
+  std::string escaped = base64(builder.buffer);
   for (std::size_t at; (at = escaped.find('=')) != std::string::npos;)
     escaped.replace(at, 1, "%3D");
   expect_picture(

@@ -105,6 +105,26 @@ TEST(RobustSimilarity, KeepsACameraWithoutWhichNothingIsDetermined) {
   EXPECT_THAT(robust_similarity(survey.cameras, survey.positions).outliers, IsEmpty());
 }
 
+// The last camera is off the line of the others, and its position is wrong.
+TEST(RobustSimilarity, FindsTheWrongPositionThatIsOffTheLineOfTheOthers) {
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    Noise noise_of(seed);
+    Survey survey = noise_of.survey(10, 0, 0);
+    for (Eigen::Index i = 0; i < 9; ++i) survey.cameras.col(i) = Vector3d(double(i), 0, 0);
+    survey.cameras.col(9) = Vector3d(4, 1, 0);
+    survey.positions = 3 * survey.cameras;
+    for (Eigen::Index i = 0; i < 10; ++i) survey.positions.col(i) += 1e-3 * noise_of.vector();
+    const RobustSimilarity fits = robust_similarity(survey.cameras, survey.positions);
+    EXPECT_FALSE(fits.off_line) << seed;
+    survey.positions.col(9) += 5 * noise_of.vector().normalized();
+    const RobustSimilarity fit = robust_similarity(survey.cameras, survey.positions);
+    EXPECT_EQ(fit.off_line, 9u) << seed;
+    EXPECT_THAT(fit.outliers, IsEmpty()) << seed;
+    EXPECT_THAT(off_line_sentence(fit, "a.jpg"),
+                HasSubstr("the position of a.jpg does not fit the 9 others that are used"));
+  }
+}
+
 TEST(RobustSimilarity, TellsThePhotographs) {
   Survey survey = Noise(3).survey(8, 0.5, 0.001);
   survey.positions.col(2).x() += 50;

@@ -49,6 +49,16 @@ def forget_what_changed(todo, out):
             files.clear(record)
 
 
+def forget_damaged_plan(out):
+    """Lets the job "plan" run again if its result is damaged or missing."""
+    plan, record = out / jobs.PLAN, out / jobs.done("plan")
+    if jobs.read_plan(out) or not (plan.exists() or record.exists()):
+        return
+    print(f"{plan}: is damaged or missing, and is made again", flush=True)
+    files.clear(plan)
+    files.clear(record)
+
+
 def largest_node(given):
     """Processors and memory [MB] of this machine, or of the node of Slurm with the most memory among
     those that have as many processors as a job can use."""
@@ -116,6 +126,7 @@ def run_all(todo, given, out, lock):
     depth maps and of the tiles, one after another."""
     records, node = Records(out / "steps"), largest_node(given)
     forget_what_changed(todo, out)
+    forget_damaged_plan(out)
     config = {"given": vars(given), "folder": os.getcwd(), "images": files.count(given.images),
               "node": node}
     files.write(out / jobs.OPTIONS, json.dumps(config))

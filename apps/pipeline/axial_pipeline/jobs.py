@@ -12,6 +12,9 @@ import re
 import shlex
 import sys
 
+from . import files
+from .failure import Failure
+from .option_files import find_option
 from .steps import Step, chain_to
 
 PACKAGE = pathlib.Path(__file__).resolve().parent
@@ -42,6 +45,23 @@ def code_of(out):
 def done(name):
     """The record that a step is done, relative to the folder of the output files."""
     return f"steps/{name}.done.json"
+
+
+def read_plan(out):
+    """The plan of DensifyPointCloud; empty if there is none or if it is damaged."""
+    plan = files.read_object(out / PLAN)
+    is_work = lambda work: (isinstance(work, dict)
+                            and all(is_number(work.get(key)) for key in ("memory_mb", "cpu_seconds")))
+    stages, works = plan.get("stages"), plan.get("per_part")
+    is_whole = (isinstance(stages, list) and stages and isinstance(works, dict)
+                and all(isinstance(stage, str) and is_work(works.get(stage)) for stage in stages)
+                and is_work(plan.get("fusion")) and is_number(plan.get("threads"))
+                and plan["threads"] > 0 and isinstance(plan.get("parts"), int) and plan["parts"] > 0)
+    return plan if is_whole else {}
+
+
+def is_number(value):
+    return isinstance(value, (int, float)) and math.isfinite(value)
 
 
 class Job:
@@ -138,7 +158,10 @@ class Survey:
         return memory + memory_of_image * images, minutes + minutes_of_image * images
 
     def planned(self):
-        return json.loads((self.out / PLAN).read_text())
+        plan = read_plan(self.out)
+        if not plan:
+            raise Failure(f"{self.out / PLAN}: is damaged; the same command makes it again")
+        return plan
 
     def asked_for_depth(self, stage, part):
         memory, minutes = self.with_margin(self.planned()["per_part"][stage])
@@ -189,9 +212,9 @@ def without_export(command):
     the cloud, which only the step "densify" makes."""
     kept, words = [], iter(command)
     for word in words:
-        option, equals, _ = word.partition("=")
-        if option.startswith("--pi") and "--pinhole-export".startswith(option):
-            if not equals:
+        # --p is the begin of --plan, too: the program refuses it.
+        if word.startswith("--pi") and find_option(word, ["--pinhole-export"]):
+            if "=" not in word:
                 next(words, None)  # the folder
         else:
             kept.append(word)

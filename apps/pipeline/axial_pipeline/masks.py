@@ -10,6 +10,7 @@ import pathlib
 
 from .failure import Failure
 from .files import resolved
+from .option_files import has_option
 
 FOLDER = "colmap_masks"  # below the output folder
 LABELS = range(1 << 16)
@@ -47,5 +48,5 @@ def command(programs, given, folder):
 
 def words(given, folder, already):
     """The options for a program that takes masks, if the words `already` have none."""
-    named = any(word.startswith("--mask") for word in already)
+    named = has_option(already, "--mask-path")
     return ["--mask-path", str(folder)] if given.masks and not named else []

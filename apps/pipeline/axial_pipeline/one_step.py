@@ -9,6 +9,7 @@ import pathlib
 from . import reconstruct_steps
 from .failure import run_main
 from .jobs import Survey
+from .option_files import has_option
 from .running import die_with
 from .steps import Records, is_done, perform
 
@@ -23,7 +24,7 @@ def limits_of(command, cpus, memory):
         return []
     options = {"--max-threads": cpus, "--max-memory": int(0.9 * memory) - 100}
     return [word for option, value in options.items()
-            if not any(given.split("=")[0] == option for given in command)
+            if not has_option(command, option)
             for word in (option, str(value))]
 
 

@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The files and folders that the words of a program's command name. A program looks up relative paths
-in its working folder (-w), and reads further options from a file there (libs/base/program.h)."""
+"""The options among the words of a program's command, and the files and folders that they name. A
+program looks up relative paths in its working folder (-w), and reads further options from a file there
+(libs/base/program.h).
+
+A program takes the begin of an option for the option, such as --mask-pa for --mask-path, and refuses a
+begin that several of its options have. So `reconstruct` takes every begin of an option for the option
+(has_option(), find_option()), wherever it looks for an option among words of the user."""
 
 import pathlib
 import re
@@ -13,6 +18,23 @@ WRITTEN = ("--output-file", "--pinhole-export", "--log-file", "--report", "--rep
 def abbreviates(word, option):
     """Whether `word` is `option`, perhaps in a shorter form."""
     return len(word) > 2 and word.startswith("--") and option.startswith(word)
+
+
+def name_of(word):
+    """The word without the value that may follow it: --mask-path of --mask-path=FOLDER."""
+    return str(word).partition("=")[0]
+
+
+def find_option(word, options):
+    """The one of `options` that `word` gives, perhaps in a shorter form; None if it gives none."""
+    name = name_of(word)
+    return name if name in options else next(
+        (option for option in options if abbreviates(name, option)), None)
+
+
+def has_option(words, option):
+    """Whether `option` is among `words`, perhaps in a shorter form."""
+    return any(find_option(word, [option]) for word in words)
 
 
 def options_in(words):

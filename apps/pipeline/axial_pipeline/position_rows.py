@@ -16,7 +16,9 @@ AXES = {**dict.fromkeys({"x", "easting", "east", "e", "geo x", "pos x", "coordin
         **dict.fromkeys({"y", "northing", "north", "n", "geo y", "pos y", "coordinate2", *LATITUDE}, "y"),
         **dict.fromkeys({"z", "altitude", "alt", "height", "elevation", "h", "up", "geo z", "pos z",
                          "rl", "gps altitude", "gpsaltitude"}, "z"), "depth": "depth"}
-CLOSE = 0.01  # degrees of a survey lie as close; cameras in metres do not
+DEGREES = ("deg", "decimal deg", "°")
+METRES = {"m", "metre", "metres", "meter", "meters"}
+WIDEST, FAR_FROM_ZERO = 0.1, 1  # of coordinates that can be degrees
 
 
 @dataclasses.dataclass
@@ -56,9 +58,14 @@ def split_fields(text, delimiter):
     return [] if quoted else fields
 
 
-def column_of(field):
+def words_of(field):
+    """The name of a column in plain words, without its unit in brackets."""
     words = re.sub(r"[(\[][^)\]]*[)\]]?", "", field.lower())
-    words = " ".join(re.sub(r'[_\-."#]', " ", words).split())
+    return " ".join(re.sub(r'[_\-."#]', " ", words).split())
+
+
+def column_of(field):
+    words = words_of(field)
     if words in LABELS:
         return "label"
     if re.search("accuracy|sigma|std|acc ", words):
@@ -103,10 +110,19 @@ def read_layout_line(line, layout):
         if header is None:
             return False
         layout.delimiter, layout.columns, fields = header
-        plain = {re.sub(r"[(\[].*", "", field).strip(' "#').lower() for field in fields}
-        if plain & (LONGITUDE | LATITUDE):
-            layout.degrees = True
+        layout.degrees = degrees_by_header(fields, layout)
     return True
+
+
+def degrees_by_header(fields, layout):
+    """Whether the names of the columns say that x and y are degrees: True or False. If they do not say,
+    what `layout` says."""
+    names = [words_of(field) for field, column in zip(fields, layout.columns) if column in ("x", "y")]
+    units = [re.sub(r"^[^(\[]*[(\[]?|[)\]].*", "", field).strip().lower()
+             for field, column in zip(fields, layout.columns) if column in ("x", "y")]
+    if {*names} & (LONGITUDE | LATITUDE) or any(unit.startswith(DEGREES) for unit in units):
+        return True
+    return False if {*units} & METRES else layout.degrees
 
 
 def ends_of(line):
@@ -231,15 +247,27 @@ def entries_of(file, known):
     return entries, layout
 
 
-def in_metres(positions, layout):
+def can_be_degrees(positions):
+    """Whether positions of an unknown unit can be degrees: orders_without_unit() in
+    libs/io/private/cameras/degrees.h."""
+    if len(positions) < 3:
+        return False
+    xs, ys = ([place[axis] for place in positions] for axis in (0, 1))
+    extent = max(max(xs) - min(xs), max(ys) - min(ys))
+    near, far = sorted(max(map(abs, values)) for values in (xs, ys))
+    return 0 < extent <= WIDEST and FAR_FROM_ZERO < far <= 360 and near <= 84
+
+
+def in_metres(positions, layout, file):
     """Longitude and latitude in degrees as metres, up to half a percent: enough to tell neighbours.
-    `positions`: by name."""
-    if len(positions) < 3 and not layout.degrees:
+    `positions`: by name. `file`: the file with them. Fails if they can be metres or degrees: RefinePoses
+    decides by the cameras, which are not known yet."""
+    if layout.degrees is None and can_be_degrees(positions.values()):
+        raise Failure(f"{file}: no line states whether the positions are metres or degrees; name the "
+                      "columns in a first line such as label,x (m),y (m),z (m) or "
+                      "label,longitude,latitude,altitude")
+    if not layout.degrees or not positions:
         return positions
-    xs, ys = ([place[axis] for place in positions.values()] for axis in (0, 1))
-    extent = max(max(xs) - min(xs), max(ys) - min(ys)) if positions else 0
-    alike = layout.degrees is None and 0 < extent < CLOSE and 1 < max(map(abs, xs + ys)) <= 180
-    if not layout.degrees and not alike:
-        return positions
+    ys = [place[1] for place in positions.values()]
     across = 111320 * math.cos(math.radians(ys[0]))
     return {name: (x * across, y * 110950, z) for name, (x, y, z) in positions.items()}

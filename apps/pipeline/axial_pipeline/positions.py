@@ -91,7 +91,7 @@ def read(file, names):
     for line, _, position, _ in found:
         if position is None or not all(map(math.isfinite, position)):
             raise Failure(f"{file}:{line}: must be NAME X Y Z with finite numbers")
-    return position_rows.in_metres({image: position for _, _, position, image in found if image}, layout)
+    return position_rows.in_metres({image: position for _, _, position, image in found if image}, layout, file)
 
 
 def names_in(images):

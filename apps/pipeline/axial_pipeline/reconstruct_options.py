@@ -2,14 +2,15 @@
 """The options of `reconstruct`, and the checks that are made before hours of work."""
 
 import argparse
+import fnmatch
 import os
 import pathlib
 import shlex
 
 from . import cluster, colmap, files, masks, matching, photographs, positions
 from .failure import Failure
-from .option_files import abbreviates, options_in
-from .ownership import ORDER, is_record
+from .option_files import find_option, has_option
+from .ownership import ORDER, WRITES, is_record
 from .programs import Programs, default_folder
 
 PROGRAMS = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh",
@@ -102,9 +103,9 @@ def check_tiles(given):
     """Refuses options of programs that contradict --tiles. The programs would refuse them after hours."""
     for name, refused in NOT_WITH_TILES.items():
         for word in words_of(name, given):
-            option = word.split("=")[0]
+            option = find_option(word, refused)
             always = option == "--tile" or name == "texture"
-            if option in refused and (given.tiles > 1 or always):
+            if option and (given.tiles > 1 or always):
                 raise Failure(f"--{name}: {option} contradicts --tiles {given.tiles}")
 
 
@@ -151,11 +152,10 @@ def check_mask_labels(given):
     """Refuses a label of masks for a program that gets the masks of --masks, which have labels of
     their own."""
     names = ("densify", "refine-mesh", "texture", "map") if given.masks else ()
-    options = {name: [option for option, _ in options_in(words_of(name, given))] for name in names}
+    words = {name: words_of(name, given) for name in names}
     for name in names:
-        own = options[name] + (options["texture"] if name == "map" else [])
-        has_masks = any(abbreviates(option, "--mask-path") for option in own)
-        if not has_masks and any(abbreviates(option, "--ignore-mask-label") for option in options[name]):
+        own = words[name] + (words["texture"] if name == "map" else [])
+        if has_option(words[name], "--ignore-mask-label") and not has_option(own, "--mask-path"):
             raise Failure(f"--{name} {getattr(given, name.replace('-', '_'))}: the label of --masks is "
                           "given by --ignore-mask-label of reconstruct")
 
@@ -207,8 +207,9 @@ def mesh_of_earlier_survey(path):
 
 
 def is_own_mesh(mesh, out):
-    """Whether a run in the folder `out` makes the file `mesh`."""
-    return mesh.parent == out and mesh.name.startswith(("scene_dense", "scene_textured"))
+    """Whether a run in the folder `out` may write or remove the file `mesh`."""
+    return mesh.parent == out and any(fnmatch.fnmatchcase(mesh.name, pattern)
+                                      for patterns in WRITES.values() for pattern in patterns)
 
 
 def check_paths(given):

@@ -4,7 +4,7 @@
 import pathlib
 
 from . import colmap, lens, masks, matching, positions, still_features
-from .option_files import read_by
+from .option_files import find_option, has_option, read_by
 from .ownership import WRITES
 from .programs import Programs
 from .reconstruct_options import wanted_steps, words_of
@@ -56,13 +56,14 @@ def refine_options(given):
 
 
 def mask_words(words, given_again):
-    """The options of TextureMesh for masks among `words`, which MapSurface has, too. Options that are
-    among `given_again` are left out."""
-    kept, again = [], {word.partition("=")[0] for word in given_again}
+    """The options of TextureMesh for masks among `words`, which MapSurface has, too, in their full form.
+    Options that are among `given_again` are left out."""
+    kept = []
     for word, value in zip(words, [*words[1:], ""]):
-        option, equals, _ = word.partition("=")
-        if option in ("--mask-path", "--ignore-mask-label") and option not in again:
-            kept += [word] if equals else [word, value]
+        option = find_option(word, ("--mask-path", "--ignore-mask-label"))
+        if option and not has_option(given_again, option):
+            _, equals, joined = word.partition("=")
+            kept += [f"{option}={joined}"] if equals else [option, value]
     return kept
 
 
@@ -137,15 +138,16 @@ RUN_FILE = "run.json"
 
 def words_about_results(given, out):
     """The options of ViewScene for the results of earlier steps, except those that the user gave."""
-    again = {word.partition("=")[0] for word in words_of("page", given)}
-    kept_maps = not any(word.startswith("--remove-d") for word in words_of("densify", given))
+    given_again = words_of("page", given)
+    kept_maps = not has_option(words_of("densify", given), "--remove-dmaps")
     wanted = wanted_steps(given)
     words = {"--run": out / RUN_FILE, "--sfm-model": out / "refined",
              **({"--truth": given.truth} if given.truth else {}),
              **({"--map": out / "scene_map"} if "map" in wanted else {}),
              **({"--change": out / "scene"} if "compare" in wanted else {}),
              **({"--depth-maps": out} if kept_maps else {})}
-    return [word for option, value in words.items() if option not in again for word in (option, value)]
+    return [word for option, value in words.items() if not has_option(given_again, option)
+            for word in (option, value)]
 
 
 def write_run_before(name, given, out):
@@ -163,12 +165,11 @@ def earlier_scene(given, scene):
 def words_about_surveys(given, scene, words):
     """The options of CompareSurveys that the user did not give among `words`: registration, and the
     scenes of both surveys if the earlier one has one beside its mesh."""
-    again = {word.partition("=")[0] for word in words}
     earlier = earlier_scene(given, scene)
     known = [("--align", "icp")]
-    if earlier.exists() and not again & {"--scene", "--other-scene"}:
+    if earlier.exists() and not any(has_option(words, option) for option in ("--scene", "--other-scene")):
         known += [("--scene", earlier), ("--other-scene", scene)]
-    return [word for option in known if option[0] not in again for word in option]
+    return [word for option in known if not has_option(words, option[0]) for word in option]
 
 
 def survey_steps(given, out):

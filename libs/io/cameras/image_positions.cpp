@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "io/cameras/position_file.h"
+#include "private/cameras/position_unit.h"
 
 namespace axial::io {
 namespace {
@@ -85,6 +86,54 @@ const std::vector<std::size_t>* longest_end_in(const Images& images, const std::
   return nullptr;
 }
 
+// The image of each position; nothing for labels without an image, and for labels of an image that
+// has a better one.
+std::vector<std::optional<std::size_t>> images_of(const PositionFile& read,
+                                                  const ImageLabels& labels,
+                                                  std::span<const std::string> paths,
+                                                  const fs::path& file) {
+  constexpr int kAbsent = 1 << 30;
+  std::vector<int> best(paths.size(), kAbsent);
+  std::vector<ImageLabels::Match> matches;
+  for (const NamedPosition& one : read.positions) {
+    matches.push_back(labels.find(one.name));
+    const ImageLabels::Match& match = matches.back();
+    if (match.images.size() > 1)
+      fail("{}:{}: '{}' can be {} or {}; give more of its path", file.string(), one.line, one.name,
+           paths[match.images[0]], paths[match.images[1]]);
+    if (match.images.empty()) continue;
+    int& rank = best[match.images[0]];
+    if (rank == match.rank) fail("{}:{}: {} occurs twice", file.string(), one.line, one.name);
+    rank = std::min(rank, match.rank);
+  }
+  std::vector<std::optional<std::size_t>> images;
+  for (const ImageLabels::Match& match : matches)
+    images.push_back(!match.images.empty() && best[match.images[0]] == match.rank
+                         ? std::optional(match.images[0])
+                         : std::nullopt);
+  return images;
+}
+
+// Converts positions that are degrees, although no line states it.
+void settle_unit(PositionFile& read, std::span<const std::optional<std::size_t>> images,
+                 std::span<const Eigen::Vector3d> centres, const std::string& file) {
+  if (read.as_degrees.empty()) return;
+  std::vector<std::size_t> rows;
+  std::vector<Eigen::Vector3d> of_rows;
+  for (std::size_t row = 0; row < images.size(); ++row) {
+    if (!images[row]) continue;
+    rows.push_back(row);
+    of_rows.push_back(centres[*images[row]]);
+  }
+  ChosenUnit chosen = choose_unit(read, rows, of_rows, file);
+  if (!chosen.note.empty()) read.notes.push_back(std::move(chosen.note));
+  if (!chosen.as_degrees) return;
+  PositionReading& degrees = read.as_degrees[*chosen.as_degrees];
+  for (std::size_t row = 0; row < images.size(); ++row)
+    read.positions[row].position = degrees.positions[row];
+  read.notes.push_back(std::move(degrees.note));
+}
+
 }  // namespace
 
 ImageLabels::ImageLabels(std::span<const std::string> paths) {
@@ -117,36 +166,22 @@ ImageLabels::Match ImageLabels::find(const std::string& label) const {
 }
 
 ImagePositions positions_of_images(const fs::path& file, std::span<const std::string> paths,
+                                   std::span<const Eigen::Vector3d> centres,
                                    const std::string& whose) {
   const ImageLabels labels(paths);
-  const PositionFile read = read_positions(
+  PositionFile read = read_positions(
       file, [&](const std::string& name) { return !labels.find(name).images.empty(); });
+  const std::vector<std::optional<std::size_t>> images = images_of(read, labels, paths, file);
+  settle_unit(read, images, centres, file.string());
   ImagePositions result;
   for (const std::string& note : read.notes) result.notes.push_back(file.string() + ": " + note);
-  const auto add_absent = [&](const NamedPosition& one) {
-    result.absent.push_back(
-        fmt::format("{}:{}: {} has no image '{}'", file.string(), one.line, whose, one.name));
-  };
-  constexpr int kAbsent = 1 << 30;
-  std::vector<int> best(paths.size(), kAbsent);
-  std::vector<ImageLabels::Match> matches;
-  for (const NamedPosition& one : read.positions) {
-    matches.push_back(labels.find(one.name));
-    const ImageLabels::Match& match = matches.back();
-    if (match.images.size() > 1)
-      fail("{}:{}: '{}' can be {} or {}; give more of its path", file.string(), one.line, one.name,
-           paths[match.images[0]], paths[match.images[1]]);
-    if (match.images.empty()) continue;
-    int& rank = best[match.images[0]];
-    if (rank == match.rank) fail("{}:{}: {} occurs twice", file.string(), one.line, one.name);
-    rank = std::min(rank, match.rank);
-  }
-  for (std::size_t k = 0; k < matches.size(); ++k) {
+  for (std::size_t k = 0; k < images.size(); ++k) {
     const NamedPosition& one = read.positions[k];
-    if (matches[k].images.empty() || best[matches[k].images[0]] != matches[k].rank)
-      add_absent(one);
+    if (images[k])
+      result.found.push_back({*images[k], one.line, one.position, one.sigma});
     else
-      result.found.push_back({matches[k].images[0], one.line, one.position, one.sigma});
+      result.absent.push_back(
+          fmt::format("{}:{}: {} has no image '{}'", file.string(), one.line, whose, one.name));
   }
   return result;
 }

@@ -62,7 +62,16 @@ struct ImagePositions {
 // labels of different ranks belong to one image, the label with the best rank counts, and the
 // others count as absent. Error that names the file and the line as for read_positions(), for a
 // label that two images match equally well, and if an image occurs twice.
+//
+// `centres`: the camera centres of the images, in any frame and unit. If no line of the file states
+// whether x and y are metres or degrees, and they can be either (PositionFile::as_degrees), all
+// readings are tried. The reading counts whose positions fit the camera centres at least twice as
+// well as those of every other reading, after a similarity; ten times with fewer than six images. A
+// note says so. Error that says how the
+// user states the unit if no reading does. Positions of fewer than three images are metres.
 ImagePositions positions_of_images(const std::filesystem::path& file,
-                                   std::span<const std::string> paths, const std::string& whose);
+                                   std::span<const std::string> paths,
+                                   std::span<const Eigen::Vector3d> centres,
+                                   const std::string& whose);
 
 }  // namespace axial::io

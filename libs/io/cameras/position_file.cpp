@@ -6,16 +6,12 @@
 
 #include "base/atomic_file.h"
 #include "private/bytes/text_reader.h"
+#include "private/cameras/degrees.h"
 #include "private/cameras/position_layout.h"
 #include "private/cameras/position_row.h"
-#include "private/cameras/utm.h"
 
 namespace axial::io {
 namespace {
-
-constexpr const char* kRemedy =
-    "convert the positions to a projected system in metres, for example in QGIS or by "
-    "gdaltransform";
 
 // The lines of the file. Spreadsheets on old systems end lines with a carriage return alone.
 std::string text_of(const std::filesystem::path& file) {
@@ -72,70 +68,41 @@ void turn_depths(Rows& found, std::vector<std::string>& notes) {
   notes.push_back("depths are positive downwards: their opposites are the heights");
 }
 
-struct Box {
-  Eigen::Array2d low = Eigen::Array2d::Constant(INFINITY), high = -low;
-};
-
-Box box_of(const Rows& found) {
-  Box box;
-  for (const PositionRow& row : found.rows) {
-    const Eigen::Array2d place = row.position.head<2>().array();
-    box.low = box.low.min(place);
-    box.high = box.high.max(place);
-  }
-  return box;
+std::vector<Eigen::Vector3d> places_of(const Rows& found) {
+  std::vector<Eigen::Vector3d> places;
+  for (const PositionRow& row : found.rows) places.push_back(row.position);
+  return places;
 }
 
-// No camera takes photographs from three places within 1 cm, and degrees of a survey lie as close.
-bool are_like_degrees(const Rows& found) {
-  constexpr double kClose = 0.01, kFarFromZero = 1;
-  const Box box = box_of(found);
-  const Eigen::Array2d farthest = box.low.abs().max(box.high.abs());
-  return found.rows.size() >= 3 && ((box.high - box.low) < kClose).all() &&
-         (box.high - box.low).maxCoeff() > 0 && farthest.maxCoeff() > kFarFromZero &&
-         farthest.maxCoeff() <= 180 && farthest.minCoeff() <= 90;
-}
-
-// Puts the longitude first.
-void order_degrees(Rows& found, const std::string& file) {
-  if (found.layout.longitude_first) return;
-  const Box box = box_of(found);
-  const Eigen::Array2d farthest = box.low.abs().max(box.high.abs());
-  if (farthest.x() > 90) return;
-  if (farthest.y() <= 90)
+// The order of degrees that a file states to be degrees.
+DegreeOrder stated_order(std::span<const Eigen::Vector3d> places, bool longitude_first,
+                         const std::string& file) {
+  const std::vector<DegreeOrder> orders = possible_orders(places, longitude_first);
+  if (orders.size() > 1) fail("{}: {}", file, kUnknownOrder);
+  if (orders.empty())
     fail(
-        "{}: the positions are degrees, but nothing says whether the latitude or the longitude is "
-        "first; name the columns in a first line such as label,longitude,latitude,altitude",
+        "{}: the positions are degrees, but some are beyond the longitudes and latitudes of the "
+        "Earth",
         file);
-  for (PositionRow& row : found.rows) std::swap(row.position.x(), row.position.y());
+  return orders.front();
 }
 
-void convert_degrees(Rows& found, const std::string& file, std::vector<std::string>& notes) {
+PositionReading read_stated_degrees(const Rows& found, const std::string& file) {
   if (!found.layout.other_datum.empty())
-    fail("{}: the positions are degrees ({}); {}", file, found.layout.other_datum, kRemedy);
-  order_degrees(found, file);
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const PositionRow& row : found.rows)
-    mean += row.position.head<2>() / static_cast<double>(found.rows.size());
-  const UtmZone zone = utm_zone(mean.x(), mean.y());
-  for (std::size_t i = 0; i < found.rows.size(); ++i) {
-    const double longitude = found.rows[i].position.x(), latitude = found.rows[i].position.y();
-    if (std::abs(latitude) > 84 || std::abs(longitude - mean.x()) > 10)
-      fail("{}:{}: longitude {} and latitude {} are not in a UTM zone with the others; {}", file,
-           found.lines[i], longitude, latitude, kRemedy);
-    found.rows[i].position.head<2>() = to_utm(longitude, latitude, zone);
-  }
-  notes.push_back(fmt::format(
-      "longitude and latitude in degrees were converted to metres, {} (EPSG:{}); heights are "
-      "unchanged",
-      zone.name(), zone.epsg()));
+    fail("{}: the positions are degrees ({}); {}", file, found.layout.other_datum, kProjectRemedy);
+  const std::vector<Eigen::Vector3d> places = places_of(found);
+  return read_as_degrees(places, stated_order(places, found.layout.longitude_first, file), file,
+                         found.lines);
 }
 
-void bring_to_metres(Rows& found, const std::string& file, std::vector<std::string>& notes) {
-  const PlaneUnit unit = found.layout.unit;
-  if (found.rows.empty()) return;
-  if (unit == PlaneUnit::degrees || (unit == PlaneUnit::unknown && are_like_degrees(found)))
-    convert_degrees(found, file, notes);
+// The readings as degrees of a file that does not state its unit.
+std::vector<PositionReading> possible_degrees(const Rows& found, const std::string& file) {
+  std::vector<PositionReading> readings;
+  const std::vector<Eigen::Vector3d> places = places_of(found);
+  if (found.layout.unit != PlaneUnit::unknown) return readings;
+  for (const DegreeOrder order : orders_without_unit(places, found.layout.longitude_first))
+    readings.push_back(read_as_degrees(places, order, file, found.lines));
+  return readings;
 }
 
 void note_accuracies(const Rows& found, std::vector<std::string>& notes) {
@@ -154,12 +121,18 @@ PositionFile read_positions(const std::filesystem::path& file, const IsImage& is
   if (const std::size_t empty = drop_empty(found))
     result.notes.push_back(fmt::format("{} lines have no coordinates and are skipped", empty));
   turn_depths(found, result.notes);
-  bring_to_metres(found, file.string(), result.notes);
+  std::vector<Eigen::Vector3d> places = places_of(found);
+  if (found.layout.unit == PlaneUnit::degrees && !places.empty()) {
+    PositionReading degrees = read_stated_degrees(found, file.string());
+    places = std::move(degrees.positions);
+    result.notes.push_back(std::move(degrees.note));
+  }
+  result.as_degrees = possible_degrees(found, file.string());
   note_accuracies(found, result.notes);
   for (std::size_t i = 0; i < found.rows.size(); ++i) {
     PositionRow& row = found.rows[i];
     result.positions.push_back(
-        {std::move(row.name), row.position, found.lines[i], row.known, row.sigma});
+        {std::move(row.name), places[i], found.lines[i], row.known, row.sigma});
   }
   return result;
 }

@@ -25,8 +25,19 @@ struct NamedPosition {
   std::optional<Eigen::Vector3d> sigma = {};  // standard deviations [m], if the file has them
 };
 
+// Positions whose first two coordinates are read in one of several ways.
+struct PositionReading {
+  std::string unit;                        // of the first two coordinates, in words
+  std::string note;                        // the line about their conversion
+  std::vector<Eigen::Vector3d> positions;  // in metres
+};
+
 struct PositionFile {
   std::vector<NamedPosition> positions;  // in the order of the lines
+  // Readings of the same positions as degrees. Empty, or, if no line states the unit of x and y,
+  // and they can be metres or degrees: one reading for each possible order of longitude and
+  // latitude. `positions` are then those of the reading as metres.
+  std::vector<PositionReading> as_degrees;
   // How the file was understood, a line for each decision that its user should know: degrees that
   // were converted, columns that were taken as accuracies, depths, lines without coordinates.
   std::vector<std::string> notes;
@@ -52,9 +63,10 @@ struct PositionFile {
 // Lines before the first position may name the columns and the system of the coordinates
 // (private/cameras/position_layout.h lists the forms). Without them, x, y and z follow the name.
 // `depth` is a height with the opposite sign if one depth of the file is positive. Longitude and
-// latitude in degrees become metres in the UTM zone of their mean on the ellipsoid WGS 84. They are
-// recognised by a line that states them, or if three or more positions lie within a hundredth of a
-// unit, at a distance of more than one unit from zero.
+// latitude in degrees become metres in the UTM zone of their mean on the ellipsoid WGS 84, if a
+// line states that they are degrees. If no line states the unit, x and y can be degrees if there
+// are three positions or more that lie within 0.1 of each other, more than 1 from zero, and within
+// the ranges of longitude and latitude: positions_of_images() (image_positions.h) decides.
 //
 // Error for a file that cannot be read. Error that names the file and, if possible, the line, for a
 // line of another form, numbers that are not finite, degrees whose order is not known or that

@@ -107,7 +107,7 @@ Column column_of(const std::string& words) {
 // Whether a name leaves no other meaning than degrees: "longitude", but not "x/longitude".
 bool means_degrees(const ColumnName& name) {
   return is_longitude(name.words) || is_latitude(name.words) || name.unit.starts_with("deg") ||
-         name.unit == "°";
+         name.unit == "decimal degrees" || name.unit == "°";
 }
 
 bool names_degrees(const std::string& words) {
@@ -116,14 +116,22 @@ bool names_degrees(const std::string& words) {
   });
 }
 
+// Whether a column states that its unit is the metre.
+bool means_metres(const ColumnName& name) {
+  return has({"m", "metre", "metres", "meter", "meters"}, name.unit);
+}
+
 bool is_known_unit(const std::string& unit) {
   return has({"", "m", "metre", "metres", "meter", "meters", "°", "decimal degrees"}, unit) ||
          unit.starts_with("deg");
 }
 
+bool is_plane(Column column) {
+  return column == Column::x || column == Column::y;
+}
+
 bool is_coordinate(Column column) {
-  return column == Column::x || column == Column::y || column == Column::z ||
-         column == Column::depth;
+  return is_plane(column) || column == Column::z || column == Column::depth;
 }
 
 // Clears all columns after the first of each kind.
@@ -180,15 +188,17 @@ bool read_header(std::string_view text, const std::string& where, PositionLayout
     const std::vector<ColumnName> names = column_names(text, delimiter);
     auto columns = columns_of(names);
     if (!columns) continue;
-    bool degrees = false;
+    bool degrees = false, metres = false;
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (!is_coordinate((*columns)[i])) continue;
       if (!is_known_unit(names[i].unit))
         fail("{}: column '{}' is in '{}', but positions must be in metres", where, names[i].words,
              names[i].unit);
       degrees |= means_degrees(names[i]);
+      metres |= means_metres(names[i]) && is_plane((*columns)[i]);
       layout.longitude_first |= names_degrees(names[i].words);
     }
+    if (metres) layout.unit = PlaneUnit::metres;
     if (degrees) layout.unit = PlaneUnit::degrees;
     layout.delimiter = delimiter;
     layout.columns = *std::move(columns);

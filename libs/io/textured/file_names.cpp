@@ -6,6 +6,7 @@
 #include <cctype>
 #include <string_view>
 
+#include "base/base64.h"
 #include "base/error.h"
 
 namespace axial::io {
@@ -71,31 +72,6 @@ std::string without_escapes(std::string_view text) {
     result += low >= 0 ? static_cast<char>(16 * high + low) : text[i];
   }
   return result;
-}
-
-// The value of each character of base64; -1 for other characters.
-int base64_value(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  if (c == '+' || c == '-') return 62;
-  return c == '/' || c == '_' ? 63 : -1;
-}
-
-std::string base64_decoded(std::string_view text, const std::string& owner) {
-  for (int k = 0; k < 2 && text.ends_with('='); ++k) text.remove_suffix(1);
-  if (text.size() % 4 == 1) fail("{} is base64 of a wrong length", owner);
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3 + 2);
-  unsigned bits = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const int value = base64_value(text[i]);
-    if (value < 0) fail("{} is not base64 at character {}", owner, i);
-    bits = (bits << 6) | static_cast<unsigned>(value);
-    // After 2, 3 and 4 characters another byte is complete.
-    if (i % 4 != 0) bytes += static_cast<char>((bits >> (2 * (3 - i % 4))) & 0xFF);
-  }
-  return bytes;
 }
 
 }  // namespace

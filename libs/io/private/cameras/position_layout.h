@@ -41,7 +41,8 @@ std::optional<std::vector<std::string>> split_fields(std::string_view text, char
 // forms:
 //   sep=;                       the delimiter, as spreadsheets write it
 //   #Label,X/Longitude,...      names of columns, with or without `#`, between any delimiters; they
-//                               must name the label and three coordinates
+//                               must name the label and three coordinates, and may state the unit
+//                               in brackets: label,x (m),y (m),z (m)
 //   # CoordinateSystem: WKT     as Metashape writes it
 //   EPSG:32633, +proj=..., WGS84 UTM 33N   as OpenDroneMap expects it
 // Error that begins with `where` if the line states a unit that is neither metres nor degrees.

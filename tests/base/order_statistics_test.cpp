@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/order_statistics.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+namespace axial {
+namespace {
+
+RC_GTEST_PROP(OrderStatistics, AreThoseOfTheSortedValues, (const std::vector<int>& values)) {
+  RC_PRE(!values.empty());
+  std::vector<int> sorted = values;
+  std::ranges::sort(sorted);
+  for (std::size_t place = 0; place < values.size(); ++place)
+    RC_ASSERT(value_at_place(values, place) == sorted[place]);
+  RC_ASSERT(upper_median(values) == sorted[values.size() / 2]);
+  RC_ASSERT(lower_quantile(values, 0) == sorted.front());
+  RC_ASSERT(lower_quantile(values, 0.5) == sorted[(values.size() - 1) / 2]);
+  RC_ASSERT(lower_quantile(values, 1) == sorted.back());
+}
+
+TEST(OrderStatistics, OfNoValuesAreZero) {
+  EXPECT_EQ(upper_median(std::vector<double>{}), 0);
+  EXPECT_EQ(lower_quantile(std::vector<float>{}, 0.75), 0);
+}
+
+TEST(OrderStatistics, OfAnEvenNumberAreOneOfTheTwoInTheMiddle) {
+  EXPECT_EQ(upper_median(std::vector{4.0, 1.0, 3.0, 2.0}), 3);
+  EXPECT_EQ(lower_quantile(std::vector{4.0, 1.0, 3.0, 2.0}, 0.5), 2);
+}
+
+}  // namespace
+}  // namespace axial
