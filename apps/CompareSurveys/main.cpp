@@ -251,8 +251,8 @@ void report(const compare::Comparison& comparison) {
              comparison.area_unseen);
   if (comparison.area_unseen > changes.area_compared)
     log_warning(
-        "--scene, --other-scene: less than half of the common ground is seen by enough "
-        "photographs: are the scenes those of the meshes?");
+        "--min-views: less than half of the common ground was compared, because fewer photographs "
+        "of a survey than this number see the rest");
   warn_of_large_changes(comparison);
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "mesh/point_distances.h"
 #include "scene/marked_faces.h"
@@ -94,18 +95,11 @@ float longest_edge(const Mesh& mesh, std::size_t face) {
   return std::max({(at[a] - at[b]).norm(), (at[b] - at[c]).norm(), (at[c] - at[a]).norm()});
 }
 
-// The upper median.
-float median_of(std::vector<float> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 float median_longest_edge(const Mesh& mesh) {
   std::vector<float> lengths;
   lengths.reserve(mesh.faces.size());
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) lengths.push_back(longest_edge(mesh, f));
-  return median_of(std::move(lengths));
+  return upper_median(std::move(lengths));
 }
 
 // The least cosine at which two cameras must see a face that points do not prove.
@@ -136,7 +130,7 @@ LeastCosines least_cosines(const Mesh& mesh, const UnseenOptions& options) {
     return least;
   }
   const std::vector<float> distances = distances_to_points(mesh, options.points);
-  const float limit = kFar * median_of(distances);
+  const float limit = kFar * upper_median(distances);
   for (std::size_t f = 0; f < distances.size(); ++f) {
     const bool is_far = distances[f] > limit;
     least.first[f] = is_far ? kFirst : kProven;

@@ -18,7 +18,7 @@ SCENES = {name: ("--preset", name) for name in PRESETS} | {
 ALARMS = re.compile(r"does not belong to|no camera of|no camera sees them|inside out|does not show the place"
                     r"|does not show the ground|do not seem to show|is blank|are blank"
                     r"|smaller than their cameras|is used, although|are ignored|points away from"
-                    r"|the cameras are below|are the scenes those of the meshes")
+                    r"|the cameras are below")
 
 
 class Chain:
