@@ -260,13 +260,15 @@ def can_be_degrees(positions):
 
 def in_metres(positions, layout, file):
     """Longitude and latitude in degrees as metres, up to half a percent: enough to tell neighbours.
-    `positions`: by name. `file`: the file with them. Fails if they can be metres or degrees: RefinePoses
-    decides by the cameras, which are not known yet."""
-    if layout.degrees is None and can_be_degrees(positions.values()):
-        raise Failure(f"{file}: no line states whether the positions are metres or degrees; name the "
-                      "columns in a first line such as label,x (m),y (m),z (m) or "
-                      "label,longitude,latitude,altitude")
-    if not layout.degrees or not positions:
+    `positions`: by name. `file`: the file with them. Positions that can be metres or degrees are taken as
+    degrees, and a line says so: the cameras, by which RefinePoses decides, are not known yet."""
+    degrees = layout.degrees
+    if degrees is None and can_be_degrees(positions.values()):
+        print(f"{file}: no line states whether the positions are metres or degrees; they are taken as "
+              "degrees to find neighbours. To state it, name the columns in a first line such as "
+              "label,x (m),y (m),z (m) or label,longitude,latitude,altitude", flush=True)
+        degrees = True
+    if not degrees or not positions:
         return positions
     ys = [place[1] for place in positions.values()]
     across = 111320 * math.cos(math.radians(ys[0]))
