@@ -18,7 +18,7 @@ constexpr double kAround = 0.07;       // of the longer side: the mean height ar
 constexpr int kWindow = 6, kStep = 3;  // side of a window, and distance of the windows [cells]
 constexpr int kShifts = 12;            // along each side of the map
 constexpr std::size_t kFewest = 12;    // windows
-constexpr double kSame = 0.66, kOfRelief = 2.5, kLeastRelief = 0.2;
+constexpr double kSame = 0.6, kOfRelief = 2.5, kLeastRelief = 0.2;
 
 // A map of cells, each of which is the mean of the heights in a square; NaN where less than half of
 // the square has a height.
