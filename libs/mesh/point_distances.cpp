@@ -36,7 +36,7 @@ std::vector<float> distances_to_points(const Mesh& mesh, std::span<const Eigen::
 }
 
 std::uint64_t bytes_of_distances(const Mesh& mesh) {
-  constexpr std::uint64_t kPointInTree = 32;  // its position and number, and its part of the nodes
+  constexpr std::uint64_t kPointInTree = 20;  // its number, and its part of the nodes
   return mesh.faces.size() * (kPointsPerFace * kPointInTree + sizeof(float));
 }
 

@@ -19,8 +19,8 @@ std::size_t enough_points(std::size_t faces);
 // point, and all coordinates are finite.
 std::vector<float> distances_to_points(const Mesh& mesh, std::span<const Eigen::Vector3f> points);
 
-// The memory [bytes] of distances_to_points() with its result, for enough_points() points and with
-// these points.
+// The memory [bytes] of distances_to_points() with its result, for enough_points() points, besides
+// its arguments.
 std::uint64_t bytes_of_distances(const Mesh& mesh);
 
 }  // namespace axial::mesh

@@ -117,20 +117,31 @@ struct LeastCosines {
   std::vector<float> first, second;
 };
 
+LeastCosines without_second_kind(const Mesh& mesh) {
+  const std::vector<float> zero(mesh.faces.size(), 0.0f);
+  return {zero, zero};
+}
+
+LeastCosines by_sizes(const Mesh& mesh) {
+  LeastCosines least = without_second_kind(mesh);
+  const float median = median_longest_edge(mesh);
+  for (std::size_t f = 0; f < least.second.size(); ++f)
+    least.second[f] = least_cosine(longest_edge(mesh, f) / median);
+  return least;
+}
+
 LeastCosines least_cosines(const Mesh& mesh, const UnseenOptions& options) {
   constexpr float kFar = 9.0f, kFirst = 0.25f, kProven = -2.0f;
-  LeastCosines least;
-  least.first.assign(mesh.faces.size(), 0.0f);
-  least.second = least.first;
+  LeastCosines least = without_second_kind(mesh);
   if (!options.sizes_tell) return least;
-  if (options.points.empty()) {
-    const float median = median_longest_edge(mesh);
-    for (std::size_t f = 0; f < least.second.size(); ++f)
-      least.second[f] = least_cosine(longest_edge(mesh, f) / median);
-    return least;
-  }
+  if (options.points.empty()) return by_sizes(mesh);
   const std::vector<float> distances = distances_to_points(mesh, options.points);
-  const float limit = kFar * upper_median(distances);
+  const float middle = upper_median(distances);
+  if (middle > median_longest_edge(mesh)) {
+    log_info("the cloud is too sparse for this mesh to tell which faces were measured");
+    return by_sizes(mesh);
+  }
+  const float limit = kFar * middle;
   for (std::size_t f = 0; f < distances.size(); ++f) {
     const bool is_far = distances[f] > limit;
     least.first[f] = is_far ? kFirst : kProven;
@@ -391,12 +402,13 @@ Mesh treat_unseen(Mesh mesh, std::span<const geometry::PosedCamera> cameras,
 }
 
 std::uint64_t bytes_of_unseen(const Mesh& mesh) {
+  const std::uint64_t points = enough_points(mesh.faces.size()) * sizeof(Eigen::Vector3f);
   // The graph; the components before and after, the parts of the origins, marks; then the rest.
   const std::uint64_t rest = mesh.vertices.size() * 17 + mesh.faces.size() * 13;
   const std::uint64_t removing = FaceGraph::bytes(mesh) + mesh.faces.size() * 14 + rest;
   const std::uint64_t cosines = mesh.faces.size() * sizeof(float);
   const std::uint64_t proving = cosines + bytes_of_distances(mesh);
-  return std::max({geometry::bytes_of_cosines(mesh), proving, removing});
+  return points + std::max({geometry::bytes_of_cosines(mesh), proving, removing});
 }
 
 }  // namespace axial::mesh

@@ -39,7 +39,9 @@ struct UnseenOptions {
 //      second largest cosine of the angle between the face's normal and the ray of a camera is
 //      below 0.2 (r - 3), at most 0.4. r is the longest edge of the face divided by the median
 //      longest edge of all faces.
-// If `points` are known, they decide instead of the sizes. A face is far from them if the distance
+// If `points` are known, they decide instead of the sizes, unless they are too sparse: if the
+// median distance below is more than the median longest edge, the points are not those of the mesh,
+// or too few of them, and the sizes decide. A face is far from them if the distance
 // from its middle to the nearest point is more than nine times the median of this distance over all
 // faces. Only faces that are far from the points are unseen:
 //   1. those with a cosine of at most 0.25, or that no two cameras see,
@@ -88,7 +90,8 @@ Mesh without_unseen(const Mesh& mesh, std::vector<std::uint8_t> unseen, double c
 Mesh treat_unseen(Mesh mesh, std::span<const geometry::PosedCamera> cameras,
                   const UnseenOptions& options, const ProgressSink& progress = {});
 
-// The memory [bytes] of treat_unseen() with its result, besides `mesh`.
+// The memory [bytes] of treat_unseen() with its result and with UnseenOptions::points, besides
+// `mesh`.
 std::uint64_t bytes_of_unseen(const Mesh& mesh);
 
 }  // namespace axial::mesh

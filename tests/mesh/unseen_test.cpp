@@ -194,6 +194,12 @@ TEST_P(Unseen, FacesNearPointsWereMeasured) {
   options.sizes_tell = false;
   EXPECT_EQ(unseen_faces(mesh, cameras, options), unseen_faces(mesh, cameras, holes(0)))
       << "a decimated mesh says nothing about its points";
+  // One point for about 50 faces: those of another cloud, or sparse ones.
+  std::vector<Eigen::Vector3f> sparse;
+  for (std::size_t v = 0; v < mesh.vertices.size(); v += 25) sparse.push_back(mesh.vertices[v]);
+  options.points = sparse;
+  options.sizes_tell = true;
+  EXPECT_EQ(unseen_faces(mesh, cameras, options), unseen_faces(mesh, cameras, holes(0)));
 }
 
 // Two cameras see the near half of the folded wall, and all of the whole one, at a cosine of about
