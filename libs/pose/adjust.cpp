@@ -3,6 +3,7 @@
 
 #include <ceres/iteration_callback.h>
 #include <ceres/solver.h>
+#include <glog/logging.h>
 
 #include "base/error.h"
 #include "pose/adjust_problem.h"
@@ -77,6 +78,7 @@ AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSi
   Iterations iterations(sink, many ? options.least_gain : 0);
   solver.callbacks.push_back(&iterations);
   ceres::Solver::Summary summary;
+  FLAGS_minloglevel = google::GLOG_FATAL;  // the Error below states a failure in one line
   ceres::Solve(solver, &adjusted.problem(), &summary);
   if (!summary.IsSolutionUsable()) fail("bundle adjustment: {}", summary.message);
   adjusted.write_back(bundle);

@@ -73,7 +73,9 @@ void check_known(const std::string& asked, const Words& words, const Sigmas& sig
 // `setting` and `refine` are the names of the settings in messages.
 void check_sigma(const Words& words, const std::string& word, double sigma,
                  const std::string& setting, const std::string& refine) {
+  constexpr double kLeast = 1e-12;  // far below any measurement; its inverse square is finite
   if (!(sigma >= 0 && std::isfinite(sigma))) fail("{} {}: must be 0 or more", setting, sigma);
+  if (sigma > 0 && sigma < kLeast) fail("{} {}: must be 0, or {} or more", setting, sigma, kLeast);
   if (sigma > 0 && !words.contains(word))
     fail("{} {}: {} does not name {}", setting, sigma, refine, word);
 }

@@ -129,7 +129,7 @@ def put_other_thing(random, path, others):
         path.symlink_to("no_such_file")
     elif kind == 3:
         path.symlink_to(path.name)
-    elif kind == 4:
+    elif kind == 4 or (kind == 5 and not others):
         path.write_bytes(b"")
     elif kind == 5:
         shutil.copyfile(random.choice(others), path)

@@ -204,6 +204,8 @@ class Scales(ProgramTest):
                 ("--scale-sigma 0.1: is the standard deviation of --scale-from",
                  ("--scale-sigma", "0.1")),
                 ("--normal-sigma 1: --refine does not name normal", ("--normal-sigma", "1")),
+                ("--distance-sigma 1e-320: must be 0, or 1e-12 or more",
+                 ("--refine", "distance", "--distance-sigma", "1e-320")),
                 ("--focal-sigma 0.1: --refine does not name focal",
                  ("--refine", "index", "--focal-sigma", "0.1")),
                 ("--refine centre: there is a flat port", ("--refine", "centre")),
