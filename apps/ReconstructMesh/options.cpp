@@ -50,7 +50,9 @@ void declare_io(OptionList& list, Raw& raw, Options& options) {
       .add("pointcloud-file,p", &raw.cloud,
            "dense cloud with views (<input>.ply, or the scene's points if there is no such file)")
       .add("output-file,o", &raw.output, "mesh to write (<input>_mesh.ply)")
-      .add_with_default("export-type", &raw.export_type, "format of the mesh: ply, obj or glb")
+      .add_with_default("export-type", &raw.export_type,
+                        "format of the mesh: ply, obj or glb; if it is not given, the extension of "
+                        "--output-file decides")
       .add_with_default("max-memory", &options.max_memory,
                         "largest memory to use [MB] (0: 70 % of the free memory)")
       .add_with_default("tiles", &options.tiles,

@@ -54,12 +54,16 @@ void declare_io(OptionList& list, Raw& raw, Options& options) {
   list.add("input-file,i", &raw.input, "scene with cameras (.mvs)")
       .add("mesh-file,m", &raw.mesh, "mesh to refine: PLY, OBJ, GLB or glTF (<input>.ply)")
       .add("output-file,o", &raw.output, "mesh to write (<input>_refine.ply)")
-      .add_with_default("export-type", &raw.export_type, "format of the mesh: ply, obj or glb")
+      .add_with_default("export-type", &raw.export_type,
+                        "format of the mesh: ply, obj or glb; if it is not given, the extension of "
+                        "--output-file decides")
       .add_with_default("max-memory", &scene.max_memory,
                         "largest memory to use [MB] (0: 70 % of the free memory)")
-      .add("mask-path", &raw.mask_path, "folder of masks (<image>.mask.png)")
+      .add("mask-path", &raw.mask_path,
+           "folder with a mask for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
+           "a.jpg, in the same subfolders as the images")
       .add_with_default("ignore-mask-label", &scene.ignore_mask_label,
-                        "label of masks where pixels are not used (below 0: no masks)");
+                        "mask value to leave out; below 0: no masks (default with --mask-path: 0)");
   io::declare_bit_depth(list, scene.bit_depth);
 }
 

@@ -68,8 +68,8 @@ void declare_estimate(OptionList& visible, Options& options) {
       .add("scale-from", &options.scale_from,
            "known lengths or positions in metres: images:NAME,NAME,METRES (names with commas in "
            "double quotes) or points:ID,ID,METRES or positions:FILE with a line NAME X Y Z for "
-           "each image (names may contain blanks); without it, only refraction determines the "
-           "scale, with low precision")
+           "each image (names may contain blanks), or a file of Metashape, Pix4D, OpenDroneMap or "
+           "a spreadsheet; without it, only refraction determines the scale, with low precision")
       .add_with_default("scale-sigma", &options.scale_sigma,
                         "standard deviation of the lengths or positions of --scale-from [m]")
       .add_with_default("max-error", &options.refine.tracks.max_error,

@@ -52,7 +52,8 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
       .add("mesh-file,m", &raw.mesh, "mesh to texture: PLY, OBJ, GLB or glTF (<input>.ply)")
       .add("output-file,o", &raw.output, "textured mesh to write (<input>_texture)")
       .add_with_default("export-type", &raw.export_type,
-                        "formats to write, separated by commas: ply, obj, glb, gltf")
+                        "formats to write, separated by commas: ply, obj, glb, gltf; if it is not "
+                        "given, the extension of --output-file decides")
       .add_with_default("decimate", &settings.decimate,
                         "part of the faces to keep, from 0 to 1; the mesh is simplified first")
       .add_with_default("close-holes", &settings.close_holes,

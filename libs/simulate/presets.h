@@ -55,8 +55,9 @@ struct Preset {
 //   hand-held camera, through the port of "reef".
 // - "closeup": views around an object with overhangs, 0.5 to 0.9 m away, through a tilted acrylic
 //   port.
-// - "survey": rows of ten views from above. The number of rows follows from the number of views;
-//   the content of a view does not depend on it.
+// - "survey": rows of ten views from above. The number of rows, the size of the seabed and the
+//   number of boulders (one for each view) follow from the number of views, so that surveys of
+//   different numbers of views show different ground.
 // - "thicket": branching coral, ropes, plates and overhangs above a seabed, seen from above and
 //   from all sides at about 0.9 m. The structures are 1 to 16 pixels thick in views 1024 pixels
 //   wide.

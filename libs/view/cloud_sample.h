@@ -46,7 +46,7 @@ struct PointChunk {
 // together are a random sample of the cloud, for every k: level 0 has `largest` points, and the
 // levels 0 to k together have 4^k times as many, as long as there are enough points. Inside a
 // level, each chunk has its own part of space, so that chunks outside the picture need not be
-// drawn. Chunks are sorted by level. Error for more than 2^32 - 1 points. Precondition: `largest`
+// drawn. Chunks are sorted by level. Error for 2^32 - 1 points or more. Precondition: `largest`
 // is at least 1.
 std::vector<PointChunk> divide_into_chunks(const PointCloud& cloud, std::size_t largest);
 
