@@ -240,6 +240,29 @@ class Positions(InFolder):
         with self.assertRaisesRegex(Failure, "positions.csv:1: 'IMG_1' can be a/IMG_1.JPG or b/IMG_1.JPG"):
             positions.read(self.write("positions.csv", "IMG_1 1 2 3\n"), ["a/IMG_1.JPG", "b/IMG_1.JPG"])
 
+    def test_the_latitude_is_first_where_only_this_is_possible(self):
+        names = ["a.jpg", "b.jpg", "c.jpg"]
+        for header, rows, first, guess in (
+                ("", ((-60, -90.3), (-60.0001, -90.3), (-60, -90.3001)), True, True),
+                ("label,x (deg),y (deg),z", ((60, 123), (60.0001, 123), (60, 123.0001)), True, False),
+                ("label,x (deg),y (deg),z", ((123, 60), (123, 60.0001), (123.0001, 60)), False, False),
+                ("label,x (deg),y (deg),z", ((16, 60), (16, 60.0001), (16.0001, 60)), False, False),
+                ("label,longitude,latitude,z", ((123, 60), (123, 60.0001), (123.0001, 60)), False, False),
+                ("EPSG:4326", ((123, 60), (123, 60.0001), (123.0001, 60)), False, False)):
+            lines = [f"{name},{x},{y},-3\n" for name, (x, y) in zip(names, rows)]
+            file = self.write("degrees.csv", "".join([f"{header}\n" if header else "", *lines]))
+            found = {}
+            said = self.said_by(lambda: found.update(positions.read(file, names)))
+            for name, metres in zip(names[1:], (11.1, 5.57)):  # to the north or south, to the east or west
+                self.assertAlmostEqual(math.dist(found[names[0]], found[name]), metres, delta=0.05, msg=lines)
+            self.assertEqual(("taken as degrees to find neighbours, the latitude first." in said,
+                              "degrees: the first is taken as the latitude to find neighbours" in said),
+                             (first and guess, first and not guess), said)
+            self.assertEqual(said.count("\n"), int(first or guess))
+        self.write("degrees.csv", "label,longitude,latitude,z\na,10,85,0\nb,10,85.0001,0\n")
+        found = positions.read(file, names)
+        self.assertAlmostEqual(math.dist(*found.values()), 11.1, delta=0.05)
+
     def test_names_of_no_photograph_are_told(self):
         for name in ("a.jpg", "b.jpg", "c.jpg"):
             self.write(name, grey_png([bytes(4)] * 3))
