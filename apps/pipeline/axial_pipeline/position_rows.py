@@ -5,6 +5,7 @@ libs/io/cameras/position_file.h, whose tests say more; RefinePoses names the mis
 import dataclasses
 import math
 import re
+import statistics
 
 from .failure import Failure
 
@@ -20,6 +21,7 @@ DEGREES = ("deg", "decimal deg", "°")
 METRES = {"m", "metre", "metres", "meter", "meters"}
 WIDEST, FAR_FROM_ZERO = 0.1, 1  # of coordinates that can be degrees
 MOST_LATITUDE = 84  # of UTM
+LONGEST_STEP = 50  # m, usually, between photographs of a survey that follow each other
 
 
 @dataclasses.dataclass
@@ -284,20 +286,50 @@ def metres_of_degrees(positions, latitude_first):
             for name, place in positions.items()}
 
 
+def way_along(places):
+    """The median step between positions that follow each other, and the sum of all steps as a part of the
+    extent."""
+    steps = [math.dist(one, other) for one, other in zip(places, places[1:])]
+    low, high = ([limit(axis) for axis in zip(*places)] for limit in (min, max))
+    return statistics.median(steps), sum(steps) / math.dist(low, high)
+
+
+def is_vertical_scan(as_metres, as_degrees):
+    """Whether positions, in the order of their file and in both readings, are those of a camera that moves
+    up or down, in metres: as degrees, x and y jump to and fro over long ways. A survey in degrees has short
+    steps in x and y, however its heights vary; without an order in the file, no reading has a short way."""
+    step, way = way_along(as_degrees)
+    return step > LONGEST_STEP and 2 * way_along(as_metres)[1] < way
+
+
+def tell_guess(file, reading):
+    print(f"{file}: no line states whether the positions are metres or degrees; they are taken as {reading}. "
+          "To state it, name the columns in a first line such as label,x (m),y (m),z (m) or "
+          "label,longitude,latitude,altitude", flush=True)
+
+
+def guessed(positions, latitude_first):
+    """The positions in metres, and the reading in words, if no line states the unit."""
+    degrees = metres_of_degrees(positions, latitude_first)
+    if is_vertical_scan([*positions.values()], [*degrees.values()]):
+        return positions, "metres to find neighbours, because the camera moves up or down in them"
+    return degrees, f"degrees to find neighbours{', the latitude first' if latitude_first else ''}"
+
+
 def in_metres(positions, layout, file, tell=True):
-    """The positions in metres, to tell neighbours. `positions`: by name. `file`: the file with them.
-    Positions that can be metres or degrees are taken as degrees: the cameras, by which RefinePoses
-    decides, are not known yet. `tell`: prints a line about an unknown unit or order."""
+    """The positions in metres, to tell neighbours. `positions`: by name, in the order of `file`. Positions
+    that can be metres or degrees are taken as degrees, except those of a vertical scan: the cameras, by
+    which RefinePoses decides, are not known yet. `tell`: prints a line about an unknown unit or order."""
     is_guess = layout.degrees is None and can_be_degrees(positions.values())
     if not positions or not (layout.degrees or is_guess):
         return positions
     latitude_first = latitude_is_first(positions.values(), layout)
-    if tell and is_guess:
-        print(f"{file}: no line states whether the positions are metres or degrees; they are taken as "
-              f"degrees to find neighbours{', the latitude first' if latitude_first else ''}. To state it, "
-              "name the columns in a first line such as label,x (m),y (m),z (m) or "
-              "label,longitude,latitude,altitude", flush=True)
-    elif tell and latitude_first:
+    if is_guess:
+        found, reading = guessed(positions, latitude_first)
+        if tell:
+            tell_guess(file, reading)
+        return found
+    if tell and latitude_first:
         print(f"{file}: the second coordinate is beyond {MOST_LATITUDE} degrees: the first is taken as the "
               "latitude to find neighbours", flush=True)
     return metres_of_degrees(positions, latitude_first)
