@@ -14,22 +14,30 @@ SCENES = {name: ("--preset", name) for name in PRESETS} | {
     "dome": ("--preset", "closeup", "--dome-radius", 0.1, "--dome-z", 0.005),
     "fisheye": ("--preset", "closeup", "--lens", "OPENCV_FISHEYE,-0.02,0.004,0,0"),
     "water-surface": ("--preset", "closeup", "--scale", 10, "--water-level", 4)}
-# Of libs/belong, geometry/seen_part.h, libs/compare and the readers of photographs. DensifyPointCloud's
-# check of scores is not among them: the scores of this size of photographs are below its limit on transect.
+# Of libs/belong, geometry/seen_part.h, libs/compare, DensifyPointCloud and the readers of photographs.
 ALARMS = re.compile(r"does not belong to|no camera of|no camera sees them|inside out|does not show the place"
-                    r"|does not show the ground|is blank|are blank"
+                    r"|does not show the ground|do not seem to show|is blank|are blank"
                     r"|smaller than their cameras|is used, although|are ignored|points away from"
                     r"|the cameras are below")
+# Alarms that are left out, by scene. The median score of photographs of this size is 0.63 on `transect` under
+# water, below the limit of 0.65 of DensifyPointCloud's check.
+LEFT_OUT = {"transect": "do not seem to show"}
+
+
+def alarms_in(log, scene):
+    """The lines of a log that are alarms on a scene, given by name."""
+    return [line for line in log.read_text().splitlines() if ALARMS.search(line)
+            and not (scene in LEFT_OUT and LEFT_OUT[scene] in line)]
 
 
 class Chain:
-    """The programs on one scene in one medium. `alarms` collects the lines of false alarms."""
+    """The programs on one scene, given by name, in one medium. `alarms` collects the lines of false alarms."""
 
-    def __init__(self, folder, data, medium, alarms):
-        self.folder, self.alarms = folder, alarms
+    def __init__(self, work, name, data, medium, alarms):
+        self.name, self.folder, self.alarms = name, work / "no-false-alarms" / f"{name}-{medium}", alarms
         self.housing = data / "housing.json" if medium == "water" else None
         self.refractive = ["--refractive"] if self.housing else []
-        self.scene, self.dense = folder / "scene.mvs", folder / "scene_dense.mvs"
+        self.scene, self.dense = self.folder / "scene.mvs", self.folder / "scene_dense.mvs"
         self.run("import", PROGRAMS.import_scene(data / "sparse", data / medium, self.scene, self.housing))
 
     def run(self, name, command):
@@ -38,10 +46,9 @@ class Chain:
         try:
             measured(log, *command)
         except RuntimeError:
-            if not ALARMS.search(log.read_text()):
+            if not alarms_in(log, self.name):
                 raise
-        self.alarms += [f"{self.folder.name} {name}: {line}" for line in log.read_text().splitlines()
-                        if ALARMS.search(line)]
+        self.alarms += [f"{self.folder.name} {name}: {line}" for line in alarms_in(log, self.name)]
 
     def make_mesh(self):
         self.run("densify", PROGRAMS.densify(self.scene, self.folder, "-o", self.dense,
@@ -72,7 +79,7 @@ def check_scene(work, name, alarms):
     data = runs.simulated(f"small-{name}", BASE, *SCENES[name], *SMALL).data
     meshes = []
     for medium in ("air", "water"):
-        chain = Chain(work / "no-false-alarms" / f"{name}-{medium}", data, medium, alarms)
+        chain = Chain(work, name, data, medium, alarms)
         mesh, refined, few = chain.make_mesh()
         for used in (refined, few):
             chain.use(used)

@@ -16,7 +16,7 @@ import unittest
 import unittest.mock
 
 from pipeline_folder import InFolder
-from programs import main, run
+from programs import grey_png, main, run
 
 from axial_pipeline import colmap, gps, matching
 from axial_pipeline.failure import Failure
@@ -136,6 +136,17 @@ class Matching(InFolder):
             self.assertEqual(found, {"a.jpg": [1, 1, 3], "b.jpg": [1, 2, 3], "c.jpg": [1, 4, 1],
                                      "d.jpg": [0, 0, 0]})
             self.assertEqual(said, "    1 of 4 photographs have no position and are not matched\n")
+
+    def test_an_unknown_unit_is_told_once(self):
+        self.database()
+        for name in "abc":
+            self.write(f"images/{name}.jpg", grey_png([bytes(4)] * 3))
+        self.positions.write_text("a.jpg 16 54 0\nb.jpg 16 54.0001 0\nc.jpg 16 54.0002 0\n")
+        told = self.said_by(matching.check, self.with_positions())
+        self.assertIn("they are taken as degrees to find neighbours", told)
+        said, found = self.prepared(self.with_positions())
+        self.assertEqual(said, "")
+        self.assertAlmostEqual(found["b.jpg"][1] - found["a.jpg"][1], 11.1, delta=0.05)
 
     def test_gps_positions_stay(self):
         self.database(prior=(54.5, 10, 0))

@@ -8,6 +8,7 @@ import io
 import json
 import math
 import os
+import random
 import subprocess
 import sys
 import unittest
@@ -239,6 +240,65 @@ class Positions(InFolder):
         self.assertEqual(positions.read(file, names)[names[1]], (16.5, 54.2501, -3))
         with self.assertRaisesRegex(Failure, "positions.csv:1: 'IMG_1' can be a/IMG_1.JPG or b/IMG_1.JPG"):
             positions.read(self.write("positions.csv", "IMG_1 1 2 3\n"), ["a/IMG_1.JPG", "b/IMG_1.JPG"])
+
+    def test_the_latitude_is_first_where_only_this_is_possible(self):
+        names = ["a.jpg", "b.jpg", "c.jpg"]
+        for header, rows, first, guess in (
+                ("", ((-60, -90.3), (-60.0001, -90.3), (-60, -90.3001)), True, True),
+                ("label,x (deg),y (deg),z", ((60, 123), (60.0001, 123), (60, 123.0001)), True, False),
+                ("label,x (deg),y (deg),z", ((123, 60), (123, 60.0001), (123.0001, 60)), False, False),
+                ("label,x (deg),y (deg),z", ((16, 60), (16, 60.0001), (16.0001, 60)), False, False),
+                ("label,longitude,latitude,z", ((123, 60), (123, 60.0001), (123.0001, 60)), False, False),
+                ("EPSG:4326", ((123, 60), (123, 60.0001), (123.0001, 60)), False, False)):
+            lines = [f"{name},{x},{y},-3\n" for name, (x, y) in zip(names, rows)]
+            file = self.write("degrees.csv", "".join([f"{header}\n" if header else "", *lines]))
+            found = {}
+            said = self.said_by(lambda: found.update(positions.read(file, names)))
+            for name, metres in zip(names[1:], (11.1, 5.57)):  # to the north or south, to the east or west
+                self.assertAlmostEqual(math.dist(found[names[0]], found[name]), metres, delta=0.05, msg=lines)
+            self.assertEqual(("taken as degrees to find neighbours, the latitude first." in said,
+                              "degrees: the first is taken as the latitude to find neighbours" in said),
+                             (first and guess, first and not guess), said)
+            self.assertEqual(said.count("\n"), int(first or guess))
+        self.write("degrees.csv", "label,longitude,latitude,z\na,10,85,0\nb,10,85.0001,0\n")
+        found = positions.read(file, names)
+        self.assertAlmostEqual(math.dist(*found.values()), 11.1, delta=0.05)
+
+    def read_as(self, places, reading):
+        """The positions that are read of a file without a header, in the order of `places`. Checks what is
+        said."""
+        names = [f"{number}.jpg" for number in range(len(places))]
+        file = self.write("positions.txt", "".join(f"{name} {x:.7f} {y:.7f} {z:.3f}\n"
+                                                   for name, (x, y, z) in zip(names, places)))
+        found = {}
+        said = self.said_by(lambda: found.update(positions.read(file, names)))
+        self.assertIn(f"whether the positions are metres or degrees; they are taken as {reading} to find", said)
+        self.assertEqual(said.count("\n"), 1)
+        return [found[name] for name in names]
+
+    def test_a_survey_in_degrees_of_no_stated_unit_has_its_neighbours(self):
+        """Tracks to and fro, with heights that vary at random, or along a slope across the tracks, in the
+        order of the tracks and in none."""
+        chance = random.Random(1)
+        for step in (1e-5, 1e-4):
+            cells = [(row, column if row % 2 else 9 - column) for row in range(10) for column in range(10)]
+            for slope, noise in ((0, 2), (1, 0.2), (0, 0)):
+                tracks = [(16 + column * step, 54 + row * step, slope * row + chance.uniform(-noise, noise))
+                          for row, column in cells]
+                for places in (tracks, chance.sample(tracks, len(tracks))):
+                    found = self.read_as(places, "degrees")
+                    first, second = (found[places.index(tracks[number])] for number in (0, 99))
+                    self.assertAlmostEqual(math.dist(first[:2], second[:2]), step * 9 * 110950, delta=step * 1e4)
+
+    def test_a_vertical_scan_in_metres_of_no_stated_unit_has_its_neighbours(self):
+        chance = random.Random(1)
+        jitter = lambda: chance.uniform(-0.0025, 0.0025)
+        for count in (10, 40, 400):
+            down = [(10 + jitter(), 20 + jitter(), -0.5 * number) for number in range(count)]
+            up = [(10 + jitter(), 20 + jitter(), z + 0.2) for _, _, z in reversed(down)]
+            for places in (down, [*down, *up]):
+                for place, found in zip(places, self.read_as(places, "metres"), strict=True):
+                    self.assertLess(math.dist(place, found), 1e-3)
 
     def test_names_of_no_photograph_are_told(self):
         for name in ("a.jpg", "b.jpg", "c.jpg"):

@@ -439,7 +439,8 @@ class OutOfDate(FilesCase):
         self.succeeds()
         kept = [self.put(f"out/{name}") for name in
                 ("scene_map.qgz", "scene_map.dem.tif.aux.xml", "scene_textured_cleaned.ply",
-                 "scene_textured.blend", "scene_textured0 edited.png")]
+                 "scene_textured.blend", "scene_textured0 edited.png",
+                 "scene_textured_material_0 edited_map_Kd.png")]
         textures = [self.put(f"out/scene_textured{end}.png") for end in
                     ("1", "_material_0_map_Kd", "_material_12_map_Kd", "_gltf0", "_gltf12")]
         self.succeeds("--texture=--outlier-threshold 0.1")

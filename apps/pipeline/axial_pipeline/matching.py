@@ -95,15 +95,15 @@ def step(given, features, database):
 def prepare_positions(database, file):
     """Makes COLMAP's spatial matcher use the positions of `file` [m], or the GPS positions that are
     in the database if `file` is None. Can be repeated. Prints how many photographs have no
-    position. Does nothing to the database of a newer COLMAP, which has its own table for GPS
-    positions."""
+    position; check_positions() tells how the file is read. Does nothing to the database of a newer
+    COLMAP, which has its own table for GPS positions."""
     with contextlib.closing(sqlite3.connect(database)) as connection, connection:
         columns = {row[1] for row in connection.execute("PRAGMA table_info(images)")}
         if "prior_tx" not in columns:
             return
         names = [name for name, in connection.execute("SELECT name FROM images")]
         if file:
-            write_positions(connection, positions.read(file, names))
+            write_positions(connection, positions.read(file, names, tell=False))
         # COLMAP takes a missing position for a place near all others, and skips three zeros.
         connection.execute("UPDATE images SET prior_tx = 0, prior_ty = 0, prior_tz = 0 WHERE "
                            "prior_tx IS NULL OR prior_ty IS NULL OR prior_tz IS NULL")

@@ -13,7 +13,8 @@ from . import files
 from .failure import Failure
 
 TEXTURED = (".glb", ".ply", ".obj", ".mtl", ".gltf", ".bin", "[0-9].png", "[0-9][0-9].png",
-            "[0-9][0-9][0-9].png", "_material_[0-9]*_map_Kd.png", "_gltf[0-9].png", "_gltf[0-9][0-9].png",
+            "[0-9][0-9][0-9].png", "_material_[0-9]_map_Kd.png", "_material_[0-9][0-9]_map_Kd.png",
+            "_material_[0-9][0-9][0-9]_map_Kd.png", "_gltf[0-9].png", "_gltf[0-9][0-9].png",
             "_gltf[0-9][0-9][0-9].png")
 TILE = ".tile[0-9]*-[0-9]*"
 MAPS = ("dem.tif", "ortho.tif", "views.tif", "sigma.tif", "hillshade.tif", "contours.geojson", "jpg")

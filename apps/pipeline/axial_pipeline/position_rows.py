@@ -5,6 +5,7 @@ libs/io/cameras/position_file.h, whose tests say more; RefinePoses names the mis
 import dataclasses
 import math
 import re
+import statistics
 
 from .failure import Failure
 
@@ -19,6 +20,8 @@ AXES = {**dict.fromkeys({"x", "easting", "east", "e", "geo x", "pos x", "coordin
 DEGREES = ("deg", "decimal deg", "°")
 METRES = {"m", "metre", "metres", "meter", "meters"}
 WIDEST, FAR_FROM_ZERO = 0.1, 1  # of coordinates that can be degrees
+MOST_LATITUDE = 84  # of UTM
+LONGEST_STEP = 50  # m, usually, between photographs of a survey that follow each other
 
 
 @dataclasses.dataclass
@@ -26,6 +29,7 @@ class Layout:
     delimiter: str = ""  # "": blanks, or not stated
     columns: tuple = ()
     degrees: bool = None  # None: not stated
+    longitude_first: bool = False  # whether a line says that x is the longitude if the unit is degrees
 
 
 def number(field):
@@ -106,21 +110,30 @@ def read_layout_line(line, layout):
     elif re.fullmatch(r"wgs ?84( utm .*)?", small):
         layout.degrees = "utm" not in small
     else:
-        header = header_of(line, layout)
-        if header is None:
-            return False
-        layout.delimiter, layout.columns, fields = header
-        layout.degrees = degrees_by_header(fields, layout)
+        return read_header(line, layout)
+    layout.longitude_first = layout.longitude_first or bool(layout.degrees)
     return True
 
 
-def degrees_by_header(fields, layout):
-    """Whether the names of the columns say that x and y are degrees: True or False. If they do not say,
+def read_header(line, layout):
+    """Whether the line names the columns."""
+    header = header_of(line, layout)
+    if header is None:
+        return False
+    layout.delimiter, layout.columns, fields = header
+    names = {words_of(field) for field, column in zip(fields, layout.columns) if column in ("x", "y")}
+    names_degrees = bool(names & (LONGITUDE | LATITUDE))
+    layout.longitude_first = layout.longitude_first or names_degrees
+    layout.degrees = names_degrees or degrees_by_units(fields, layout)
+    return True
+
+
+def degrees_by_units(fields, layout):
+    """Whether the units of the columns say that x and y are degrees: True or False. If they do not say,
     what `layout` says."""
-    names = [words_of(field) for field, column in zip(fields, layout.columns) if column in ("x", "y")]
     units = [re.sub(r"^[^(\[]*[(\[]?|[)\]].*", "", field).strip().lower()
              for field, column in zip(fields, layout.columns) if column in ("x", "y")]
-    if {*names} & (LONGITUDE | LATITUDE) or any(unit.startswith(DEGREES) for unit in units):
+    if any(unit.startswith(DEGREES) for unit in units):
         return True
     return False if {*units} & METRES else layout.degrees
 
@@ -255,21 +268,68 @@ def can_be_degrees(positions):
     xs, ys = ([place[axis] for place in positions] for axis in (0, 1))
     extent = max(max(xs) - min(xs), max(ys) - min(ys))
     near, far = sorted(max(map(abs, values)) for values in (xs, ys))
-    return 0 < extent <= WIDEST and FAR_FROM_ZERO < far <= 360 and near <= 84
+    return 0 < extent <= WIDEST and FAR_FROM_ZERO < far <= 360 and near <= MOST_LATITUDE
 
 
-def in_metres(positions, layout, file):
-    """Longitude and latitude in degrees as metres, up to half a percent: enough to tell neighbours.
-    `positions`: by name. `file`: the file with them. Positions that can be metres or degrees are taken as
-    degrees, and a line says so: the cameras, by which RefinePoses decides, are not known yet."""
-    degrees = layout.degrees
-    if degrees is None and can_be_degrees(positions.values()):
-        print(f"{file}: no line states whether the positions are metres or degrees; they are taken as "
-              "degrees to find neighbours. To state it, name the columns in a first line such as "
-              "label,x (m),y (m),z (m) or label,longitude,latitude,altitude", flush=True)
-        degrees = True
-    if not degrees or not positions:
+def latitude_is_first(positions, layout):
+    """Whether x can only be the latitude. Where both orders are possible, the longitude is first."""
+    farthest = [max(abs(place[axis]) for place in positions) for axis in (0, 1)]
+    return not layout.longitude_first and farthest[0] <= MOST_LATITUDE < farthest[1]
+
+
+def metres_of_degrees(positions, latitude_first):
+    """Longitude and latitude in degrees as metres, up to half a percent: enough to tell neighbours."""
+    latitude = 0 if latitude_first else 1
+    first = next(iter(positions.values()))[latitude]
+    across = 111320 * math.cos(math.radians(first))
+    return {name: (place[1 - latitude] * across, place[latitude] * 110950, place[2])
+            for name, place in positions.items()}
+
+
+def way_along(places):
+    """The median step between positions that follow each other, and the sum of all steps as a part of the
+    extent."""
+    steps = [math.dist(one, other) for one, other in zip(places, places[1:])]
+    low, high = ([limit(axis) for axis in zip(*places)] for limit in (min, max))
+    return statistics.median(steps), sum(steps) / math.dist(low, high)
+
+
+def is_vertical_scan(as_metres, as_degrees):
+    """Whether positions, in the order of their file and in both readings, are those of a camera that moves
+    up or down, in metres: as degrees, x and y jump to and fro over long ways. A survey in degrees has short
+    steps in x and y, however its heights vary; without an order in the file, no reading has a short way."""
+    step, way = way_along(as_degrees)
+    return step > LONGEST_STEP and 2 * way_along(as_metres)[1] < way
+
+
+def tell_guess(file, reading):
+    print(f"{file}: no line states whether the positions are metres or degrees; they are taken as {reading}. "
+          "To state it, name the columns in a first line such as label,x (m),y (m),z (m) or "
+          "label,longitude,latitude,altitude", flush=True)
+
+
+def guessed(positions, latitude_first):
+    """The positions in metres, and the reading in words, if no line states the unit."""
+    degrees = metres_of_degrees(positions, latitude_first)
+    if is_vertical_scan([*positions.values()], [*degrees.values()]):
+        return positions, "metres to find neighbours, because the camera moves up or down in them"
+    return degrees, f"degrees to find neighbours{', the latitude first' if latitude_first else ''}"
+
+
+def in_metres(positions, layout, file, tell=True):
+    """The positions in metres, to tell neighbours. `positions`: by name, in the order of `file`. Positions
+    that can be metres or degrees are taken as degrees, except those of a vertical scan: the cameras, by
+    which RefinePoses decides, are not known yet. `tell`: prints a line about an unknown unit or order."""
+    is_guess = layout.degrees is None and can_be_degrees(positions.values())
+    if not positions or not (layout.degrees or is_guess):
         return positions
-    ys = [place[1] for place in positions.values()]
-    across = 111320 * math.cos(math.radians(ys[0]))
-    return {name: (x * across, y * 110950, z) for name, (x, y, z) in positions.items()}
+    latitude_first = latitude_is_first(positions.values(), layout)
+    if is_guess:
+        found, reading = guessed(positions, latitude_first)
+        if tell:
+            tell_guess(file, reading)
+        return found
+    if tell and latitude_first:
+        print(f"{file}: the second coordinate is beyond {MOST_LATITUDE} degrees: the first is taken as the "
+              "latitude to find neighbours", flush=True)
+    return metres_of_degrees(positions, latitude_first)

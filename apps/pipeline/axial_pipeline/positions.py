@@ -85,13 +85,15 @@ def found_in(file, names):
             for line, label, position, image, rank in found], layout
 
 
-def read(file, names):
-    """The positions of the images `names`, by name. Fails at a line without a position."""
+def read(file, names, tell=True):
+    """The positions of the images `names` [m], by name. Fails at a line without a position. `tell`: prints
+    a line if the file does not state the unit or the order of the coordinates."""
     found, layout = found_in(file, names)
     for line, _, position, _ in found:
         if position is None or not all(map(math.isfinite, position)):
             raise Failure(f"{file}:{line}: must be NAME X Y Z with finite numbers")
-    return position_rows.in_metres({image: position for _, _, position, image in found if image}, layout, file)
+    known = {image: position for _, _, position, image in found if image}
+    return position_rows.in_metres(known, layout, file, tell)
 
 
 def names_in(images):
