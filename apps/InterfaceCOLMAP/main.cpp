@@ -325,8 +325,8 @@ void warn_of_misfit(const Options& options, const Input& input) {
 int import_model(const Options& options) {
   const Input input = read_input(options);
   const fs::path folder = options.scene_file.parent_path();
-  make_folder(folder);
   const OutputLock lock = lock_output(options.scene_file);
+  make_folder(folder);  // tells why it cannot be made
   std::error_code ignored;
   const bool behind_ports =
       !input.housing.ports.empty() || fs::exists(io::housing_beside(options.scene_file), ignored);

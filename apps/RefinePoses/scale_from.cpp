@@ -211,13 +211,17 @@ std::vector<std::string> add_known(const std::string& scale_from, double sigma,
                                    const pose::Bundle& bundle, pose::AdjustOptions& adjust,
                                    UnusedInput& unused) {
   if (scale_from.empty()) return {};
+  const auto report = [&](const std::string& what) {
+    unused.report((what.starts_with(kOption) ? "" : kOption) + what);
+  };
   try {
     return add(scale_from, sigma, working_folder, bundle, adjust);
   } catch (const NoUse& reason) {
-    const std::string what = reason.what();
-    unused.report((what.starts_with(kOption) ? "" : kOption) + what);
-    return {};
+    report(reason.what());
+  } catch (const io::UnclearUnit& reason) {
+    report(reason.what());
   }
+  return {};
 }
 
 }  // namespace axial::apps

@@ -25,11 +25,12 @@ namespace axial::apps {
 //
 // Error that names the option or file, and the mistake. Some valid input cannot be used with this
 // model: no such image or point, both ends in one place, too few positions, all positions on one
-// line, or all on one line but one that does not fit. Such input is reported to `unused`, and
-// `adjust` stays as it is. Positions of images without a pose are skipped, with a warning for each,
-// because the list of a survey may name more photographs. Positions that do not fit the others
-// (robust_similarity in scene/robust_similarity.h) are left out with a warning, and these lines are
-// returned. Positions of a mirrored frame are an error.
+// line, or all on one line but one that does not fit, or positions whose unit or order the file
+// does not state and the cameras do not tell (io::UnclearUnit). Such input is reported to `unused`,
+// and `adjust` stays as it is. Positions of images without a pose are skipped, with a warning for
+// each, because the list of a survey may name more photographs. Positions that do not fit the
+// others (robust_similarity in scene/robust_similarity.h) are left out with a warning, and these
+// lines are returned. Positions of a mirrored frame are an error.
 std::vector<std::string> add_known(const std::string& scale_from, double sigma,
                                    const std::filesystem::path& working_folder,
                                    const pose::Bundle& bundle, pose::AdjustOptions& adjust,

@@ -111,7 +111,7 @@ std::vector<NamedOutput> outputs_of(const Options& options, const Files& files) 
   return outputs;
 }
 
-// Called before the work. Makes the folders of the outputs.
+// Called before the work. Makes the folders of copied textures.
 void check_outputs(const Options& options, const Files& files) {
   std::vector<fs::path> inputs = io::files_of_scene(options.files);
   inputs.insert(inputs.end(),
@@ -276,10 +276,10 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   const ThreadLimit threads(options.parsed.common.max_threads);
   const Files files = files_of(options);
-  check_outputs(options, files);
   std::optional<OutputLock> lock;
   const bool writes = !outputs_of(options, files).empty();
-  if (writes) lock.emplace(options.output);
+  if (writes) lock.emplace(options.output, LockUse::alone, ParentFolder::made);
+  check_outputs(options, files);
   io::SceneWithCameras scene = io::read_scene_with_cameras(options.files);
   keep_images(options, files, scene.scene);
   for (const MovedPly& ply : files.plys) warn_of_foreign_points(options, scene, ply.input);

@@ -94,10 +94,24 @@ void note_this_process(int descriptor, LockUse use) {
       emptied ? ::write(descriptor, line.data(), line.size()) : 0;
 }
 
+// Makes the folder of a file and its parents as far as it can. Returns the missing ones, the
+// deepest first.
+std::vector<fs::path> make_missing_folders_of(const fs::path& file) {
+  std::vector<fs::path> missing;
+  std::error_code ignored;
+  const fs::path folder = fs::absolute(file, ignored).parent_path();
+  for (fs::path at = folder; !fs::exists(at, ignored) && at.has_relative_path();
+       at = at.parent_path())
+    missing.push_back(at);
+  fs::create_directories(folder, ignored);
+  return missing;
+}
+
 }  // namespace
 
-OutputLock::OutputLock(fs::path output, LockUse use) {
+OutputLock::OutputLock(fs::path output, LockUse use, ParentFolder parent) {
   output = without_slash(output);
+  if (parent == ParentFolder::made) made_ = make_missing_folders_of(output);
   file_ = output.string() + ".lock";
   const int operation = use == LockUse::alone ? LOCK_EX : LOCK_SH;
   // A file that another process removed while this one opened it locks nothing. The number of
@@ -125,17 +139,17 @@ OutputLock::OutputLock(fs::path output, LockUse use) {
 }
 
 OutputLock::~OutputLock() {
-  if (descriptor_ < 0) return;
-  // Other processes that share the lock keep the file.
-  if (try_lock(descriptor_, LOCK_EX) == Outcome::locked && is_file(descriptor_, file_))
-    ::unlink(file_.c_str());
-  ::close(descriptor_);
+  if (descriptor_ >= 0) {
+    // Other processes that share the lock keep the file.
+    if (try_lock(descriptor_, LOCK_EX) == Outcome::locked && is_file(descriptor_, file_))
+      ::unlink(file_.c_str());
+    ::close(descriptor_);
+  }
+  for (const fs::path& folder : made_) ::rmdir(folder.c_str());  // fails if it contains anything
 }
 
 OutputLock lock_output(const fs::path& output, LockUse use) {
-  std::error_code ignored;
-  fs::create_directories(without_slash(output).parent_path(), ignored);
-  return OutputLock(output, use);
+  return OutputLock(output, use, ParentFolder::made);
 }
 
 }  // namespace axial

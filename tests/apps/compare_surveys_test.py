@@ -163,6 +163,18 @@ class Outputs(CompareTest):
         self.refuses_and_keeps("--min-views 4: no place of both surveys is seen", *self.compare(
             "--up", "0,0,1", "--scene", scene, "--min-views", "4"))
 
+    def test_little_common_ground_is_told(self):
+        # All three cameras see a strip of 0.4 m, of a ground of 1.6 m.
+        scene = self.path("work", "scene.mvs")
+        write(scene, mvs(["a.png", "b.png", "c.png"], rotation=(1, 0, 0, 0, -1, 0, 0, 0, -1),
+                         centres=[(x, 0.6, 1.2) for x in (0.3, 0.8, 1.3)], points=[]))
+        write(self.after, mesh_ply(*survey(after, 2)))
+        for views, warns in (("1", False), ("3", True)):
+            said = self.succeeds(*self.compare("--up", "0,0,1", "--scene", scene, "--min-views", views))
+            self.assertEqual("--min-views: less than half of the common ground was compared, because "
+                             "fewer photographs of a survey than this number see the rest" in
+                             said.stdout + said.stderr, warns, views)
+
     def test_any_number_of_threads_gives_the_same_bytes(self):
         found = []
         for threads in (1, 2):

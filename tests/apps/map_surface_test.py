@@ -28,6 +28,10 @@ class MapTest(TinyScene):
 
 
 class Files(MapTest):
+    def test_a_refused_command_leaves_no_folder(self):
+        self.refuses("missing.mvs", "MapSurface", "-i", "missing.mvs", "-w", self.work, "-o", "new/dir/map")
+        self.assertFalse(os.path.exists(self.path("work", "new")))
+
     def test_names(self):
         before = files_below(self.work)
         self.succeeds(*self.map())

@@ -3,6 +3,7 @@
 
 import array
 import contextlib
+import os
 import shutil
 import sqlite3
 import subprocess
@@ -125,6 +126,9 @@ class MasksForColmap(ProgramTest):
         said = self.succeeds("InterfaceCOLMAP", "-i", self.path("images"), "--mask-path", self.path("masks"),
                              "--ignore-mask-label", 7, "-o", self.path("out")).stdout
         self.assertIn("3 masks, which leave out 50.0 % of the pixels", said)
+        self.refuses("is in the folder of the photographs", "InterfaceCOLMAP", "-i", self.path("images"), "--mask-path",
+                     self.path("masks"), "-o", self.path("images", "new", "masks"))
+        self.assertFalse(os.path.exists(self.path("images", "new")))
         write(self.path("scene.mvs"), tiny_scene.mvs([self.path("images", name)
                                                       for name in tiny_scene.names()]))
         self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.folder, "--resolution-level", "0",

@@ -13,6 +13,11 @@ from transform_case import (CUBE, CUBE_FACES, PORT, TURN, UTM, Mvs, Transform, a
 
 
 class Moves(Transform):
+    def test_a_refused_command_leaves_no_folder(self):
+        self.refuses("missing.mvs", "TransformScene", "-i", "missing.mvs", "-w", self.folder, "-t", self.path("t.txt"),
+                     "-o", "new/dir/moved.mvs")
+        self.assertFalse(os.path.exists(self.path("new")))
+
     def test_there_and_back(self):
         write(self.path("back.txt"), inverse_text(2.5))
         self.transform("-t", self.path("t.txt"), "-p", "cloud.ply", "-m", "mesh.ply")

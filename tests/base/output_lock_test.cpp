@@ -117,6 +117,22 @@ TEST_F(Locked, TheFolderOfALockedOutputIsMade) {
   EXPECT_FALSE(fs::exists(folder));
 }
 
+TEST_F(Locked, OnlyFoldersWithFilesOutliveTheLock) {
+  const fs::path kept = output.parent_path() / "kept";
+  {
+    const OutputLock empty = lock_output(output.parent_path() / "new" / "dir" / "map");
+    const OutputLock used = lock_output(kept / "dir" / "map");
+    write_atomically(kept / "file", "text");
+  }
+  EXPECT_FALSE(fs::exists(output.parent_path() / "new"));
+  EXPECT_FALSE(fs::exists(kept / "dir"));
+  EXPECT_TRUE(fs::exists(kept / "file"));
+  const fs::path older = output.parent_path() / "older";
+  fs::create_directory(older);
+  { const OutputLock lock = lock_output(older / "map"); }
+  EXPECT_TRUE(fs::exists(older));
+}
+
 TEST_F(Locked, AFolderThatDoesNotExistIsNotLocked) {
   const OutputLock lock(output.parent_path() / "none" / "scene.mvs");
   EXPECT_FALSE(fs::exists(output.parent_path() / "none"));

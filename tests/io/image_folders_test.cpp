@@ -87,6 +87,14 @@ TEST_F(ImageFoldersTest, AbsoluteNamesBelowTheWorkingFolderAreFound) {
   EXPECT_THAT(find({(here() / "images/a.jpg").string(), elsewhere}), ElementsAre(found, elsewhere));
 }
 
+TEST_F(ImageFoldersTest, AnAbsoluteNameOfAFileIsThisFile) {
+  const std::string a = photograph(here(), "images/a.jpg");
+  photograph(run(), "images/a.jpg");
+  const std::string b = photograph(run(), "images/b.jpg");
+  const std::string missing = (here() / "images/b.jpg").string();
+  EXPECT_THAT(find({a, missing}), ElementsAre(a, b));
+}
+
 TEST_F(ImageFoldersTest, FilesThatAreNowhereAreInTheWorkingFolder) {
   const LogCapture log;
   EXPECT_THAT(find({"images/a.jpg"}), ElementsAre((here() / "images/a.jpg").string()));

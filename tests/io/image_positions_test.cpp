@@ -185,6 +185,22 @@ TEST_F(UnstatedUnit, IsTheDegreeWithTheLatitudeFirst) {
   EXPECT_THAT(read.notes, testing::Contains(HasSubstr("as latitude and longitude in degrees")));
 }
 
+TEST_F(UnstatedUnit, IsTheDegreeThoughAFixWasLost) {
+  const Places metres = survey({30, 20, 2});
+  Places written = degrees(metres, 16.5, 54.25);
+  written[3].setZero();
+  const ImagePositions survey =
+      read(lines(written) + "x.jpg 0 0 0\n", names(metres.size()), seen(metres));
+  ASSERT_EQ(survey.found.size(), metres.size() - 1);
+  EXPECT_EQ(survey.found[3].image, 4u);
+  EXPECT_NEAR((survey.found[3].position - survey.found[0].position).norm(),
+              (metres[4] - metres[0]).norm(), 0.03);
+  EXPECT_THAT(survey.absent, ElementsAre(HasSubstr("the scene has no image 'x.jpg'")));
+  EXPECT_THAT(survey.notes,
+              ElementsAre(HasSubstr("as longitude and latitude in degrees"), HasSubstr("UTM"),
+                          HasSubstr("1 lines have longitude and latitude 0 and are skipped")));
+}
+
 TEST_F(UnstatedUnit, MustBeStatedIfTheCamerasDoNotTell) {
   // Near the equator, a degree has nearly the same length in all directions. The positions are
   // noisy.

@@ -203,7 +203,8 @@ TEST(Positions, DegreesBecomeMetres) {
 TEST(Positions, MayHaveAnyUnitIfNoLineStatesIt) {
   const auto units_of = [](const std::string& text) {
     std::vector<std::string> units;
-    for (const PositionReading& reading : file_with(text).as_degrees) units.push_back(reading.unit);
+    for (const PositionReading& reading : file_with(text, {"a", "b", "c"}).as_degrees)
+      units.push_back(reading.unit);
     return units;
   };
   const std::string lonlat = "longitude and latitude in degrees";
@@ -216,6 +217,10 @@ TEST(Positions, MayHaveAnyUnitIfNoLineStatesIt) {
   EXPECT_THAT(units_of("#Label,X/Longitude,Y/Latitude,Z/Altitude\na,16.5,54.25,-3\n"
                        "b,16.5001,54.2501,-4\nc,16.5,54.2501,-4\n"),
               ElementsAre(lonlat));
+  // Labels without an image, and lines of a receiver without a fix, do not count.
+  EXPECT_THAT(units_of("a -154.25 16.5 1\nb -154.2501 16.5 1\nx 0 1 0\nc -154.25 16.5001 1\n"),
+              ElementsAre(lonlat));
+  EXPECT_THAT(units_of("a 54.25 16.5 1\nb 0 0 0\nc 54.25 16.53 1\n"), IsEmpty());
   EXPECT_THAT(units_of("a 88.01 16.5 1\nb 88.02 16.5 1\nc 88.01 16.51 1\n"), ElementsAre(lonlat));
   for (const char* metres :
        {"a 88.01 86.5 1\nb 88.02 86.5 1\nc 88.01 86.51 1\n", "a 1 2 3\nb 1.5 2 3\nc 1 2.5 3\n",

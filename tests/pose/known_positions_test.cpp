@@ -16,6 +16,33 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
+// Longitude and latitude fit a line of cameras as well in either order.
+TEST(StraightTransectInDegrees, IsReportedAsUnusedIfNoLineStatesTheOrder) {
+  const fs::path folder = test::empty_folder();
+  Bundle bundle;
+  std::string text;
+  for (int i = 0; i < 8; ++i) {
+    BundleImage image;
+    image.name = fmt::format("{}.jpg", i);
+    image.pose.centre = {double(i), 0, 0};
+    bundle.images.push_back(image);
+    text += fmt::format("{} {:.6f} {:.6f} -5\n", image.name, 16.5 + 1e-4 * i, 54.25 + 5e-5 * i);
+  }
+  write_atomically(folder / "known.txt", text);
+  AdjustOptions adjust;
+  const auto add = [&](UnusedInput& unused) {
+    return apps::add_known("positions:known.txt", 0.01, folder, bundle, adjust, unused);
+  };
+  UnusedInput unused(false), allowed(true);
+  EXPECT_THAT(test::error_of([&] { add(unused); }), HasSubstr("--allow-missing"));
+  EXPECT_THAT(add(allowed), IsEmpty());
+  ASSERT_THAT(allowed.lines(), SizeIs(1));
+  EXPECT_THAT(allowed.lines()[0], HasSubstr("known.txt: "));
+  EXPECT_THAT(allowed.lines()[0], HasSubstr("label,longitude,latitude,altitude"));
+  EXPECT_THAT(adjust.positions, IsEmpty());
+  fs::remove_all(folder);
+}
+
 // Cameras on a line, and one beside it.
 class OneOffTheLine : public ::testing::Test {
  protected:

@@ -30,6 +30,10 @@ Box box_of(std::span<const Eigen::Vector3d> positions) {
 
 }  // namespace
 
+bool is_lost_fix(const Eigen::Vector3d& position) {
+  return position.x() == 0 && position.y() == 0;
+}
+
 std::string words_for(DegreeOrder order) {
   return order == DegreeOrder::longitude_first ? "longitude and latitude in degrees"
                                                : "latitude and longitude in degrees";

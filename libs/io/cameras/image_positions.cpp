@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "io/cameras/position_file.h"
+#include "private/cameras/degrees.h"
 #include "private/cameras/position_unit.h"
 
 namespace axial::io {
@@ -114,14 +115,32 @@ std::vector<std::optional<std::size_t>> images_of(const PositionFile& read,
   return images;
 }
 
+using ImageOfRow = std::vector<std::optional<std::size_t>>;
+
+// Drops lines without a fix, whose 0 0 is no place of the survey.
+void drop_lost_fixes(PositionFile& read, ImageOfRow& images) {
+  std::size_t kept = 0;
+  for (std::size_t row = 0; row < images.size(); ++row) {
+    if (images[row] && is_lost_fix(read.positions[row].position)) continue;
+    images[kept] = images[row];
+    if (kept != row) read.positions[kept] = std::move(read.positions[row]);
+    ++kept;
+  }
+  if (kept == images.size()) return;
+  read.notes.push_back(
+      fmt::format("{} lines have longitude and latitude 0 and are skipped", images.size() - kept));
+  read.positions.resize(kept);
+  images.resize(kept);
+}
+
 // Converts positions that are degrees, although no line states it.
-void settle_unit(PositionFile& read, std::span<const std::optional<std::size_t>> images,
-                 std::span<const Eigen::Vector3d> centres, const std::string& file) {
+void settle_unit(PositionFile& read, ImageOfRow& images, std::span<const Eigen::Vector3d> centres,
+                 const std::string& file) {
   if (read.as_degrees.empty()) return;
   std::vector<std::size_t> rows;
   std::vector<Eigen::Vector3d> of_rows;
   for (std::size_t row = 0; row < images.size(); ++row) {
-    if (!images[row]) continue;
+    if (!images[row] || is_lost_fix(read.positions[row].position)) continue;
     rows.push_back(row);
     of_rows.push_back(centres[*images[row]]);
   }
@@ -132,6 +151,7 @@ void settle_unit(PositionFile& read, std::span<const std::optional<std::size_t>>
   for (std::size_t row = 0; row < images.size(); ++row)
     read.positions[row].position = degrees.positions[row];
   read.notes.push_back(std::move(degrees.note));
+  drop_lost_fixes(read, images);
 }
 
 }  // namespace
@@ -171,7 +191,7 @@ ImagePositions positions_of_images(const fs::path& file, std::span<const std::st
   const ImageLabels labels(paths);
   PositionFile read = read_positions(
       file, [&](const std::string& name) { return !labels.find(name).images.empty(); });
-  const std::vector<std::optional<std::size_t>> images = images_of(read, labels, paths, file);
+  ImageOfRow images = images_of(read, labels, paths, file);
   settle_unit(read, images, centres, file.string());
   ImagePositions result;
   for (const std::string& note : read.notes) result.notes.push_back(file.string() + ": " + note);

@@ -11,6 +11,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/error.h"
+
 namespace axial::io {
 
 // Finds images by the labels that other programs give them. The time of a search does not depend on
@@ -43,6 +45,12 @@ class ImageLabels {
   std::array<Table, kVariants> tables_;
 };
 
+// A file of positions does not state their unit or order, and the cameras do not tell it.
+class UnclearUnit : public Error {
+ public:
+  using Error::Error;
+};
+
 // The known position of one image.
 struct ImagePosition {
   std::size_t image = 0;  // index into the paths
@@ -67,8 +75,10 @@ struct ImagePositions {
 // whether x and y are metres or degrees, and they can be either (PositionFile::as_degrees), all
 // readings are tried. The reading counts whose positions fit the camera centres at least twice as
 // well as those of every other reading, after a similarity; ten times with fewer than six images. A
-// note says so. Error that says how the
-// user states the unit if no reading does. Positions of fewer than three images are metres.
+// note says so. UnclearUnit that says how the user states the unit if no reading does, for example
+// because the positions lie on one line. Positions of fewer than three images are metres. Lines
+// whose x and y are 0 (a receiver without a fix) do not count for this choice. If the others are
+// degrees, these lines are skipped, and a note states their number.
 ImagePositions positions_of_images(const std::filesystem::path& file,
                                    std::span<const std::string> paths,
                                    std::span<const Eigen::Vector3d> centres,

@@ -98,10 +98,23 @@ PositionReading read_stated_degrees(const Rows& found, const std::string& file) 
 // The readings as degrees of a file that does not state its unit.
 std::vector<PositionReading> possible_degrees(const Rows& found, const std::string& file) {
   std::vector<PositionReading> readings;
-  const std::vector<Eigen::Vector3d> places = places_of(found);
   if (found.layout.unit != PlaneUnit::unknown) return readings;
-  for (const DegreeOrder order : orders_without_unit(places, found.layout.longitude_first))
-    readings.push_back(read_as_degrees(places, order, file, found.lines));
+  std::vector<std::size_t> rows;
+  std::vector<Eigen::Vector3d> places;
+  std::vector<int> lines;
+  for (std::size_t row = 0; row < found.rows.size(); ++row) {
+    if (!found.rows[row].known || is_lost_fix(found.rows[row].position)) continue;
+    rows.push_back(row);
+    places.push_back(found.rows[row].position);
+    lines.push_back(found.lines[row]);
+  }
+  for (const DegreeOrder order : orders_without_unit(places, found.layout.longitude_first)) {
+    PositionReading reading = read_as_degrees(places, order, file, lines);
+    std::vector<Eigen::Vector3d> all = places_of(found);
+    for (std::size_t k = 0; k < rows.size(); ++k) all[rows[k]] = reading.positions[k];
+    reading.positions = std::move(all);
+    readings.push_back(std::move(reading));
+  }
   return readings;
 }
 

@@ -36,7 +36,8 @@ struct PositionFile {
   std::vector<NamedPosition> positions;  // in the order of the lines
   // Readings of the same positions as degrees. Empty, or, if no line states the unit of x and y,
   // and they can be metres or degrees: one reading for each possible order of longitude and
-  // latitude. `positions` are then those of the reading as metres.
+  // latitude. `positions` are then those of the reading as metres. Positions without an image, and
+  // those whose x and y are 0 (a receiver without a fix), are the same in all readings.
   std::vector<PositionReading> as_degrees;
   // How the file was understood, a line for each decision that its user should know: degrees that
   // were converted, columns that were taken as accuracies, depths, lines without coordinates.
@@ -64,9 +65,10 @@ struct PositionFile {
 // (private/cameras/position_layout.h lists the forms). Without them, x, y and z follow the name.
 // `depth` is a height with the opposite sign if one depth of the file is positive. Longitude and
 // latitude in degrees become metres in the UTM zone of their mean on the ellipsoid WGS 84, if a
-// line states that they are degrees. If no line states the unit, x and y can be degrees if there
-// are three positions or more that lie within 0.1 of each other, more than 1 from zero, and within
-// the ranges of longitude and latitude: positions_of_images() (image_positions.h) decides.
+// line states that they are degrees. If no line states the unit, the positions of images whose x
+// and y are not both 0 count. These can be degrees if there are three or more that lie within 0.1
+// of each other, more than 1 from zero, and within the ranges of longitude and latitude:
+// positions_of_images() (image_positions.h) decides.
 //
 // Error for a file that cannot be read. Error that names the file and, if possible, the line, for a
 // line of another form, numbers that are not finite, degrees whose order is not known or that

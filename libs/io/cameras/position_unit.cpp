@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
+#include "io/cameras/image_positions.h"
 #include "private/cameras/degrees.h"
 #include "scene/robust_similarity.h"
 
@@ -66,13 +66,12 @@ ChosenUnit choose_unit(const PositionFile& read, std::span<const std::size_t> ro
             fmt::format("no line states the unit of the positions; they fit the cameras as {} ({})",
                         best.unit, fits)};
   if (best.as_degrees && second.as_degrees && best.misfit <= clear * candidates[2].misfit)
-    fail("{}: {}", file, kUnknownOrder);
-  fail(
+    throw UnclearUnit(fmt::format("{}: {}", file, kUnknownOrder));
+  throw UnclearUnit(fmt::format(
       "{}: no line states whether the positions are metres or degrees, and they fit the cameras "
       "about equally well ({}); name the columns in a first line such as label,x (m),y (m),z (m) "
-      "or "
-      "label,longitude,latitude,altitude",
-      file, fits);
+      "or label,longitude,latitude,altitude",
+      file, fits));
 }
 
 }  // namespace axial::io

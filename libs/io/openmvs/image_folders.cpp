@@ -26,7 +26,9 @@ fs::path part_below(const fs::path& folder, const fs::path& path) {
 
 // The part of a name that starts at a folder; empty: the name is empty or names a place of its own.
 fs::path relative_part(const fs::path& name, const fs::path& working_folder) {
-  return name.is_absolute() ? part_below(working_folder, name.lexically_normal()) : name;
+  if (!name.is_absolute()) return name;
+  const fs::path file = name.lexically_normal();
+  return is_on_disk(file) ? fs::path() : part_below(working_folder, file);
 }
 
 fs::path file_in(const fs::path& folder, const fs::path& part) {
@@ -77,20 +79,21 @@ void warn_of_others(const fs::path& scene, const fs::path& folder, std::span<con
 std::vector<std::string> find_files_of_scene(const fs::path& working_folder, const fs::path& scene,
                                              const std::vector<std::string>& names,
                                              std::string_view what) {
-  Paths parts;
-  for (const std::string& name : names)
-    if (fs::path part = relative_part(name, working_folder); !part.empty())
-      parts.push_back(std::move(part));
+  Paths part_of, parts;
+  for (const std::string& name : names) {
+    part_of.push_back(relative_part(name, working_folder));
+    if (!part_of.back().empty()) parts.push_back(part_of.back());
+  }
   const fs::path scene_folder = fs::absolute(scene).lexically_normal().parent_path();
   const fs::path folder = fullest(candidates_of(working_folder, scene_folder), parts);
   if (folder != working_folder)
     log_info("{}: the paths of its {} start at {}", scene.string(), what, folder.string());
   warn_of_others(scene, folder, Paths{working_folder, scene_folder}, parts);
   std::vector<std::string> files;
-  for (const std::string& name : names) {
-    const fs::path part = relative_part(name, working_folder);
-    files.push_back(part.empty() ? fs::path(name).lexically_normal().string()
-                                 : file_in(folder, part).string());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const fs::path file =
+        part_of[i].empty() ? fs::path(names[i]).lexically_normal() : file_in(folder, part_of[i]);
+    files.push_back(file.string());
   }
   return files;
 }

@@ -22,6 +22,9 @@ inline constexpr const char* kUnknownOrder =
     "the positions are degrees, but nothing says whether the latitude or the longitude is first; "
     "name the columns in a first line such as label,longitude,latitude,altitude";
 
+// Whether coordinates are 0 0, as receivers without a fix write them.
+bool is_lost_fix(const Eigen::Vector3d& position);
+
 enum class DegreeOrder { longitude_first, latitude_first };
 
 // "longitude and latitude in degrees", or the other order.

@@ -24,7 +24,7 @@ struct ChosenUnit {
 // empty. A reading is better, the smaller the residual of the similarity is (robust_similarity())
 // that maps the camera centres to the positions, as a part of the extent of the positions. The best
 // reading is right if its residual is at most half of every other one, or a tenth with fewer than
-// six images. Otherwise Error that begins with `file` and says how the user states the unit.
+// six images. Otherwise UnclearUnit that begins with `file` and says how the user states the unit.
 // `centres`: of the images that have positions, in any frame and unit. `rows`: the indices of their
 // positions. With fewer than three, no similarity is determined, and the positions are metres.
 ChosenUnit choose_unit(const PositionFile& read, std::span<const std::size_t> rows,

@@ -19,8 +19,8 @@ inline constexpr int kFoldersAboveScene = 3;
 // folder of the scene, then the kFoldersAboveScene folders above it, from the nearest: the scene
 // was written in this working folder, or was moved together with its photographs. The folder is the
 // first candidate that has all files, otherwise the first that has the most, and the working folder
-// if no candidate has any. An absolute name below the working folder counts as a relative name; all
-// other absolute names are returned as they are.
+// if no candidate has any. An absolute name below the working folder counts as a relative name if
+// its file does not exist; all other absolute names are returned as they are.
 //
 // `working_folder`: absolute and normal. `what`: the files in plural, for messages. The log states
 // a folder that is not the working folder. Warns once if the working folder or the folder of the
