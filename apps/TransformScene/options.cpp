@@ -52,8 +52,7 @@ void declare_moves(OptionList& list, Options& options, Texts& texts) {
            "world coordinates")
       .add("positions", &texts.positions,
            "text file with the known positions of camera centres: a line NAME X Y Z for an image, "
-           "or a "
-           "file of Metashape, Pix4D, OpenDroneMap or a spreadsheet")
+           "or a file of Metashape, Pix4D, OpenDroneMap or a spreadsheet")
       .add_switch("rigid", &options.rigid, "align without a change of scale")
       .add_switch("scale-ports", &options.scale_ports,
                   "a change of scale also changes the lengths of the ports that cameras carry. "

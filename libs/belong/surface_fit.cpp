@@ -99,7 +99,7 @@ SurfaceFit SurfaceMeasure::fit(const Shape& shape) {
 
 bool SurfaceMeasure::fits_changed(const Shape& shape, const PlaceChange& change,
                                   const PlaceChange& undo, double scale, double largest) {
-  // If half of all places fit, it is next to impossible that fewer than a fifth of these fit.
+  // If half of all places fit, it is very unlikely that fewer than a fifth of these fit.
   const std::vector<std::size_t> some = spread_indices(places_.size(), kFewPlaces);
   if (lower_quantile(distances(shape, some, change, undo, scale), 0.2) > largest) return false;
   const std::vector<std::size_t> all = spread_indices(places_.size(), places_.size());

@@ -122,26 +122,26 @@ LeastCosines without_second_kind(const Mesh& mesh) {
   return {zero, zero};
 }
 
-LeastCosines by_sizes(const Mesh& mesh) {
+// `median`: of the longest edges.
+LeastCosines by_sizes(const Mesh& mesh, float median) {
   LeastCosines least = without_second_kind(mesh);
-  const float median = median_longest_edge(mesh);
   for (std::size_t f = 0; f < least.second.size(); ++f)
     least.second[f] = least_cosine(longest_edge(mesh, f) / median);
   return least;
 }
 
-LeastCosines least_cosines(const Mesh& mesh, const UnseenOptions& options) {
+LeastCosines least_cosines(const Mesh& mesh, float median_edge, const UnseenOptions& options) {
   constexpr float kFar = 9.0f, kFirst = 0.25f, kProven = -2.0f;
-  LeastCosines least = without_second_kind(mesh);
-  if (!options.sizes_tell) return least;
-  if (options.points.empty()) return by_sizes(mesh);
+  if (!options.sizes_tell) return without_second_kind(mesh);
+  if (options.points.empty()) return by_sizes(mesh, median_edge);
   const std::vector<float> distances = distances_to_points(mesh, options.points);
   const float middle = upper_median(distances);
-  if (middle > median_longest_edge(mesh)) {
+  if (middle > median_edge) {
     log_info("the cloud is too sparse for this mesh to tell which faces were measured");
-    return by_sizes(mesh);
+    return by_sizes(mesh, median_edge);
   }
   const float limit = kFar * middle;
+  LeastCosines least = without_second_kind(mesh);
   for (std::size_t f = 0; f < distances.size(); ++f) {
     const bool is_far = distances[f] > limit;
     least.first[f] = is_far ? kFirst : kProven;
@@ -351,9 +351,10 @@ std::vector<std::uint8_t> unseen_faces(const Mesh& mesh,
                                        const UnseenOptions& options, const ProgressSink& progress) {
   const std::vector<float> cosines =
       geometry::second_cosines(mesh, cameras, kLargestCosine, {}, progress);
+  const float median_edge = median_longest_edge(mesh);
   std::vector<std::uint8_t> certain(mesh.faces.size()), unseen(mesh.faces.size());
   {
-    const LeastCosines least = least_cosines(mesh, options);
+    const LeastCosines least = least_cosines(mesh, median_edge, options);
     for (std::size_t f = 0; f < unseen.size(); ++f) {
       certain[f] = !(cosines[f] > least.first[f]);
       unseen[f] = certain[f] || cosines[f] < least.second[f];
@@ -361,7 +362,7 @@ std::vector<std::uint8_t> unseen_faces(const Mesh& mesh,
   }
   const FaceGraph graph(mesh);
   keep_without_certain(graph, certain, unseen);
-  const float limit = static_cast<float>(options.small_holes) * median_longest_edge(mesh);
+  const float limit = static_cast<float>(options.small_holes) * median_edge;
   keep_small_holes(mesh, graph, limit, unseen);
   return unseen;
 }

@@ -269,8 +269,7 @@ MirroredFit mirrored_fit(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& t
 std::string off_line_sentence(const RobustSimilarity& fit, const std::string& name) {
   return fmt::format(
       "the position of {} does not fit the {} others that are used, and these lie on one line, "
-      "about "
-      "which the rotation of the cameras is not determined",
+      "about which the rotation of the cameras is not determined",
       name, fit.distances.size() - fit.outliers.size() - 1);
 }
 

@@ -75,10 +75,10 @@ struct ImagePositions {
 // whether x and y are metres or degrees, and they can be either (PositionFile::as_degrees), all
 // readings are tried. The reading counts whose positions fit the camera centres at least twice as
 // well as those of every other reading, after a similarity; ten times with fewer than six images. A
-// note says so. UnclearUnit that says how the user states the unit if no reading does, for example
-// because the positions lie on one line. Positions of fewer than three images are metres. Lines
-// whose x and y are 0 (a receiver without a fix) do not count for this choice. If the others are
-// degrees, these lines are skipped, and a note states their number.
+// note says so. If no reading does, for example because the positions lie on one line, throws
+// UnclearUnit, whose text shows a header line that states the unit. Positions of fewer than three
+// images are metres. Lines whose x and y are 0 (a receiver without a fix) do not count for this
+// choice. If the others are degrees, these lines are skipped, and a note states their number.
 ImagePositions positions_of_images(const std::filesystem::path& file,
                                    std::span<const std::string> paths,
                                    std::span<const Eigen::Vector3d> centres,

@@ -54,12 +54,11 @@ struct PositionFile {
 //    this '#'. A name in double quotes is taken literally, and "" between the quotes stands for one
 //    quote. Empty lines are skipped.
 // 2. The same with more numbers behind, as in OpenDroneMap's geo.txt and Pix4D's files. With five
-// or
-//    with eight and more numbers, the fourth and fifth or the seventh and eighth are the standard
-//    deviations of the plane coordinates and of the height. Other numbers are ignored.
+//    or with eight and more numbers, the fourth and fifth or the seventh and eighth are the
+//    standard deviations of the plane coordinates and of the height. Other numbers are ignored.
 // 3. Fields separated by semicolons, tabs or commas, with or without double quotes. The decimal
-// mark
-//    may be a comma, except between commas. Lines whose three coordinates are empty are skipped.
+//    mark may be a comma, except between commas. Lines whose three coordinates are empty are
+//    skipped.
 //
 // Lines before the first position may name the columns and the system of the coordinates
 // (private/cameras/position_layout.h lists the forms). Without them, x, y and z follow the name.
