@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "belong/nearest_places.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <unordered_map>
 
 #include "base/parallel.h"
@@ -25,25 +25,24 @@ struct CellHash {
   }
 };
 
-// The places in cubes whose side is the reach. A cube lists the places in it and in the 26 cubes
-// around it: all places that are within the reach of a point of the cube.
+// Some of the places in cubes whose side is the reach. A cube lists the places in it and in the 26
+// cubes around it: all places that are within the reach of a point of the cube.
 class PlaceGrid {
  public:
-  PlaceGrid(std::span<const Eigen::Vector3d> places, double reach) : reach_(reach) {
-    all_.resize(places.size());
-    std::iota(all_.begin(), all_.end(), 0u);
-    for (const std::uint32_t i : all_) {
-      const Cell cell = cell_of(places[i]);
-      low_ = low_.cwiseMin(places[i]);
-      high_ = high_.cwiseMax(places[i]);
-      for (std::int64_t x = -1; x <= 1; ++x)
-        for (std::int64_t y = -1; y <= 1; ++y)
-          for (std::int64_t z = -1; z <= 1; ++z)
-            cells_[{cell[0] + x, cell[1] + y, cell[2] + z}].push_back(i);
-    }
+  explicit PlaceGrid(double reach) : reach_(reach) {}
+
+  void add(std::uint32_t index, const Eigen::Vector3d& place) {
+    all_.push_back(index);
+    low_ = low_.cwiseMin(place);
+    high_ = high_.cwiseMax(place);
+    const Cell cell = cell_of(place);
+    for (std::int64_t x = -1; x <= 1; ++x)
+      for (std::int64_t y = -1; y <= 1; ++y)
+        for (std::int64_t z = -1; z <= 1; ++z)
+          cells_[{cell[0] + x, cell[1] + y, cell[2] + z}].push_back(index);
   }
 
-  // Calls visit(place) for all places that may be within the reach of the box, some of them several
+  // Calls visit(index) for all places that may be within the reach of the box, some of them several
   // times.
   template <class Visit>
   void near(const Eigen::Vector3d& low, const Eigen::Vector3d& high, const Visit& visit) const {
@@ -61,8 +60,8 @@ class PlaceGrid {
 
  private:
   template <class Visit>
-  static void visit_all(const std::vector<std::uint32_t>& places, const Visit& visit) {
-    for (const std::uint32_t place : places) visit(place);
+  static void visit_all(const std::vector<std::uint32_t>& indices, const Visit& visit) {
+    for (const std::uint32_t index : indices) visit(index);
   }
 
   Cell cell_of(const Eigen::Vector3d& place) const {
@@ -94,12 +93,27 @@ std::array<Eigen::Vector3d, 3> corners_of(const Shape& shape, std::size_t part) 
   return {at(a), at(b), at(c)};
 }
 
-void search(const Shape& shape, std::size_t part, const PlaceGrid& grid,
+// The places, grouped by the distance up to which a nearer point is looked for.
+std::vector<PlaceGrid> grids_of(std::span<const Eigen::Vector3d> places,
+                                std::span<const Nearest> nearest, double reach) {
+  constexpr int kGrids = 3;
+  constexpr double kRatio = 5;  // of the reaches of two grids
+  std::vector<PlaceGrid> grids;
+  for (int k = 0; k < kGrids; ++k) grids.emplace_back(reach / std::pow(kRatio, k));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double steps = std::log(reach * reach / nearest[i].distance2) / (2 * std::log(kRatio));
+    grids[static_cast<std::size_t>(std::clamp(std::floor(steps), 0.0, kGrids - 1.0))].add(
+        static_cast<std::uint32_t>(i), places[i]);
+  }
+  return grids;
+}
+
+void search(const Shape& shape, std::size_t part, std::span<const PlaceGrid> grids,
             std::span<const Eigen::Vector3d> places, std::span<Nearest> nearest) {
   const std::array<Eigen::Vector3d, 3> corners = corners_of(shape, part);
   const Eigen::Vector3d low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
   const Eigen::Vector3d high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
-  grid.near(low, high, [&](std::uint32_t i) {
+  const auto visit = [&](std::uint32_t i) {
     const Eigen::Vector3d& place = places[i];
     const Eigen::Vector3d in_box = place.cwiseMax(low).cwiseMin(high);
     if ((in_box - place).squaredNorm() >= nearest[i].distance2) return;
@@ -107,7 +121,25 @@ void search(const Shape& shape, std::size_t part, const PlaceGrid& grid,
         shape.faces.empty() ? corners[0] : geometry::closest_on_triangle(place, corners);
     const double distance2 = (point - place).squaredNorm();
     if (distance2 < nearest[i].distance2) nearest[i] = {point, distance2};
+  };
+  for (const PlaceGrid& grid : grids) grid.near(low, high, visit);
+}
+
+// Looks for nearer points than `nearest` on each `step`-th part.
+void search_parts(const Shape& shape, std::size_t step, std::span<const Eigen::Vector3d> places,
+                  double reach, std::vector<Nearest>& nearest) {
+  constexpr std::size_t kPortions = 16;  // each has its own results, which are then joined in order
+  const std::vector<PlaceGrid> grids = grids_of(places, nearest, reach);
+  std::vector<std::vector<Nearest>> found(kPortions, nearest);
+  const std::size_t steps = (shape.parts() + step - 1) / step;
+  parallel_for(kPortions, [&](std::size_t portion) {
+    const std::size_t end = steps * (portion + 1) / kPortions;
+    for (std::size_t k = steps * portion / kPortions; k < end; ++k)
+      search(shape, k * step, grids, places, found[portion]);
   });
+  for (const std::vector<Nearest>& portion : found)
+    for (std::size_t i = 0; i < places.size(); ++i)
+      if (portion[i].distance2 < nearest[i].distance2) nearest[i] = portion[i];
 }
 
 }  // namespace
@@ -115,24 +147,15 @@ void search(const Shape& shape, std::size_t part, const PlaceGrid& grid,
 std::vector<std::optional<Eigen::Vector3d>> nearest_places(const Shape& shape,
                                                            std::span<const Eigen::Vector3d> places,
                                                            double reach) {
-  constexpr std::size_t kPortions = 64;  // each has its own results, which are then joined in order
-  const PlaceGrid grid(places, reach);
-  std::vector<std::vector<Nearest>> nearest(
-      kPortions, std::vector<Nearest>(places.size(), {Eigen::Vector3d::Zero(), reach * reach}));
-  parallel_for(kPortions, [&](std::size_t portion) {
-    const std::size_t end = shape.parts() * (portion + 1) / kPortions;
-    for (std::size_t part = shape.parts() * portion / kPortions; part < end; ++part)
-      search(shape, part, grid, places, nearest[portion]);
-  });
+  std::vector<Nearest> nearest(places.size(), {Eigen::Vector3d::Zero(), reach * reach});
+  // A sample of the parts gives most places a point that is near, so that few parts are within the
+  // distance of any place when all parts are searched.
+  constexpr std::size_t kSample = 16;
+  if (shape.parts() > kSample) search_parts(shape, kSample, places, reach, nearest);
+  search_parts(shape, 1, places, reach, nearest);
   std::vector<std::optional<Eigen::Vector3d>> result(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    double best = reach * reach;
-    for (const std::vector<Nearest>& portion : nearest) {
-      if (portion[i].distance2 >= best) continue;
-      best = portion[i].distance2;
-      result[i] = portion[i].point;
-    }
-  }
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (nearest[i].distance2 < reach * reach) result[i] = nearest[i].point;
   return result;
 }
 
