@@ -85,6 +85,23 @@ class OtherFiles(FilesCase):
             self.assertEqual(path.read_text(), "mine")
         self.assertIn("scene_textured.glb: no record", self.refused())
 
+    def test_poses_can_be_the_last_result(self):
+        said = self.succeeds("--until", "poses")
+        self.assertIn(f"Poses: {self.folder}/out/refined", said)
+        self.assertTrue((self.folder / "out" / "report.md").exists())
+        self.assertFalse((self.folder / "out" / "scene.mvs").exists())
+        self.assertEqual(self.succeeds("--until", "cloud").count("done before"), 4)
+        for options, line in [
+                (("--truth", "lens"), f"--truth {self.folder}/lens: is compared with the cloud, which --until "
+                 "poses does not make"),
+                (("--earlier", "lens"), f"--earlier {self.folder}/lens: needs the mesh, which --until poses does "
+                 "not make"),
+                (("--cluster", "local"), "--cluster local: is for the steps after the poses, which --until poses "
+                 "does not run"),
+                (("--densify=--iters 2",), "--densify --iters 2: DensifyPointCloud does not run with --until "
+                 "poses")]:
+            self.assertEqual(self.refused("--until", "poses", *options), line)
+
     def test_a_folder_of_an_older_version_goes_on(self):
         self.succeeds()
         records = self.folder / "out" / "steps"

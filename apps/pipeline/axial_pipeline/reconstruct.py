@@ -87,7 +87,7 @@ def results_of(given, out):
     """The line that names the results."""
     wanted = wanted_steps(given)
     textured = f"scene_textured.tile*-{given.tiles}.glb" if given.tiles > 1 else "scene_textured.glb"
-    found = [("Cloud", out / "scene_dense.ply")]
+    found = [("Cloud", out / "scene_dense.ply") if "densify" in wanted else ("Poses", out / "refined")]
     if "mesh" in wanted:
         found.append(("Mesh", out / textured if "texture" in wanted else best_mesh(given, out)))
     if "map" in wanted:

@@ -19,7 +19,7 @@ PROGRAMS = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructM
 MORE_OPTIONS = {"refine-poses": "RefinePoses", "densify": "DensifyPointCloud",
                 "mesh": "ReconstructMesh", "refine-mesh": "RefineMesh", "texture": "TextureMesh",
                 "map": "MapSurface", "compare": "CompareSurveys", "page": "ViewScene"}
-RESULTS = ("cloud", "mesh", "texture", "map", "page")
+RESULTS = ("poses", "cloud", "mesh", "texture", "map", "page")
 SKIPPED = ("refine-mesh", "texture", "map", "page")  # steps that may be left out
 MOST_TILES = 1000  # as in the programs
 
@@ -110,7 +110,7 @@ def check_tiles(given):
 
 
 # The first result of --until for which the steps run.
-NEEDED_FOR = {"mesh": "mesh", "refine-mesh": "mesh", "texture": "texture", "map": "map",
+NEEDED_FOR = {"densify": "cloud", "mesh": "mesh", "refine-mesh": "mesh", "texture": "texture", "map": "map",
               "compare": "mesh", "page": "page"}
 
 
@@ -125,7 +125,7 @@ def skipped(given):
 
 
 def wanted_steps(given):
-    """The names of the steps after the cloud that run."""
+    """The names of the steps after the poses that run."""
     last, left_out = RESULTS.index(given.until), skipped(given)
     return [name for name, result in NEEDED_FOR.items()
             if RESULTS.index(result) <= last and name not in left_out
@@ -144,8 +144,13 @@ def check_results(given):
                           f"{given.until}")
     if given.compare and not given.earlier:
         raise Failure(f"--compare {given.compare}: is only for --earlier")
-    if given.earlier and given.until == "cloud":
-        raise Failure(f"--earlier {given.earlier}: needs the mesh, which --until cloud does not make")
+    if given.earlier and given.until in ("poses", "cloud"):
+        raise Failure(f"--earlier {given.earlier}: needs the mesh, which --until {given.until} does not make")
+    if given.truth and given.until == "poses":
+        raise Failure(f"--truth {given.truth}: is compared with the cloud, which --until poses does not make")
+    if given.cluster and given.until == "poses":
+        raise Failure(f"--cluster {given.cluster}: is for the steps after the poses, which --until poses does "
+                      "not run")
 
 
 def check_mask_labels(given):

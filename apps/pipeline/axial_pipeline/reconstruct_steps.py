@@ -216,6 +216,8 @@ def steps_without_names_of_files(given, out):
     yield Step("refine", command, makes=Report(refined / "report.json"),
                reads=[given.lens, given.housing, *([known_positions] if known_positions else []),
                       *reads_of("refine-poses", command, given)])
+    if "densify" not in wanted_steps(given):
+        return
     command = programs.import_scene(refined, given.images, scene, refined / "housing.json")
     yield Step("import", command, makes=scene, reads=read_by(command, []))
     command = programs.densify(scene, out, "--refractive", 1, *tile_options("--fusion-tiles", given),
