@@ -26,6 +26,7 @@ import tiles  # noqa: E402, F401
 import survey_page  # noqa: E402, F401
 import still  # noqa: E402, F401
 import false_alarms  # noqa: E402, F401
+import dives  # noqa: E402, F401
 
 
 def source_state():
