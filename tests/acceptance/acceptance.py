@@ -27,6 +27,7 @@ import survey_page  # noqa: E402, F401
 import still  # noqa: E402, F401
 import false_alarms  # noqa: E402, F401
 import dives  # noqa: E402, F401
+import random_dives  # noqa: E402, F401
 
 
 def source_state():

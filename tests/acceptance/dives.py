@@ -146,24 +146,15 @@ ROWS = [
 ]
 
 
-def baseline(row, base, seed, work):
+def baseline_of(data, work):
     """The error [mm] with the right numbers, fixed."""
-    data = (row.right or row.data)(base, seed)
     file = work / "right" / f"{data.name}.txt"
     if not file.exists():
         folder = file.with_suffix("")
         brought = as_measured(data, folder)
-        brought.options = ("--refine", "none") if "none" in refine_words() else ()
-        outcome = dive_runs.run(brought, data, folder / "out")
-        file.write_text(f"{outcome.median}")
+        brought.options = ("--refine", "none")
+        file.write_text(f"{dive_runs.run(brought, data, folder / 'out').median}")
     return float(file.read_text())
-
-
-def refine_words():
-    """The words about --refine in the help of RefinePoses."""
-    import subprocess
-    said = subprocess.run([dive_runs.BIN / "RefinePoses", "--help"], capture_output=True, text=True).stdout
-    return re.sub(r"\s+", " ", said)
 
 
 def measure(row, seed, base, work):
@@ -173,7 +164,7 @@ def measure(row, seed, base, work):
     brought = as_measured(data, folder)
     row.wrong(brought, folder, data)
     outcome = dive_runs.run(brought, data, folder / "out")
-    right = baseline(row, base, seed, work)
+    right = baseline_of((row.right or row.data)(base, seed), work)
     faults = []
     if outcome.code != 0:
         faults.append(f"exit code {outcome.code}")
