@@ -101,17 +101,17 @@ class Outcome:
         return [line for line in self.said.splitlines() if "warning" in line.lower()]
 
 
-def command(brought, out):
+def command(brought, out, until):
     scale = ["--scale-from", brought.scale_from] if brought.scale_from else []
     return [sys.executable, "-B", str(ROOT / "apps/pipeline/reconstruct"), "--images", str(brought.images), "--lens",
-            str(brought.lens), "--housing", str(brought.housing), "-o", str(out), "--until", "poses", "--programs",
+            str(brought.lens), "--housing", str(brought.housing), "-o", str(out), "--until", until, "--programs",
             str(BIN), *scale, *map(str, brought.options)]
 
 
-def run(brought, data, out):
+def run(brought, data, out, until="poses"):
     """Runs `reconstruct` in the new folder `out`."""
     shutil.rmtree(out, ignore_errors=True)
-    ended = subprocess.run(command(brought, out), capture_output=True, text=True, stdin=subprocess.DEVNULL,
+    ended = subprocess.run(command(brought, out, until), capture_output=True, text=True, stdin=subprocess.DEVNULL,
                            cwd=out.parent, timeout=TIME_LIMIT)
     log = out / "logs" / "refine.log"
     said = ended.stdout + ended.stderr + (log.read_text() if log.exists() else "")

@@ -142,7 +142,7 @@ ROWS = [
     Row("blurred", reef(), pictures("blur", 3.5, (1, 4, 8)), TOLERATED_PICTURES, says="blur", lost=3),
     Row("no-housing", reef("--port-distance", 0.05), kind("flat"), factor=1.3),
     Row("dome-for-flat", reef(), another_housing(DOME), says="flat"),
-    Row("lawnmower", reef("--port-distance", 0.05, preset="survey", views=21), nothing),
+    Row("lawnmower", reef("--port-distance", 0.05, "--relief", 0.1, preset="survey", views=21), nothing),
 ]
 
 

@@ -91,7 +91,8 @@ def measure(number, base, work):
     return one, outcome, right, judged(outcome, right)
 
 
-HEAD = ("| number | dive | photographs | exit | error [mm] | right [mm] | scale off by | stated | warnings | silent fault |\n"
+HEAD = ("| number | dive | photographs | exit | error [mm] | right [mm] | scale off by | stated | warnings | "
+        "silent fault |\n"
         "|---|---|---|---|---|---|---|---|---|---|")
 
 
