@@ -28,6 +28,9 @@ bool write_housing_seed(const fs::path& file, int variant) {
   io::Housing housing = io::housing_with(flat_port());
   if (variant == 0) housing.ports["dome"] = dome_port();
   if (variant == 0) housing.ports["surface"] = WaterSurface{};
+  if (variant == 0)
+    housing.sigmas["main"] = {.normal_degrees = Eigen::Vector2d(1, 2), .index = 0.01};
+  if (variant == 0) housing.sigmas["dome"].centre = Eigen::Vector3d(0.001, 0.002, 0.003);
   if (variant == 0) housing.cameras = {{7, "dome"}, {8, "none"}};
   if (variant == 0) housing.images = {{"a/b.png", "surface"}};
   io::write_housing(file, housing);

@@ -11,6 +11,7 @@
 #include "private/bytes/text_reader.h"
 #include "private/cameras/image_names.h"
 #include "private/cameras/port_json.h"
+#include "private/cameras/port_sigmas_json.h"
 #include "private/cameras/port_values.h"
 
 namespace axial::io {
@@ -27,14 +28,33 @@ std::string port_name(const JsonPlace& place, const char* key, const Housing& ho
   return name;
 }
 
+constexpr const char* kSigma = "sigma";
+
+bool is_dome(const HousingPort& port) {
+  return std::holds_alternative<refractive::DomePort<double>>(port);
+}
+
+// Reads the port `name`, and its standard deviations.
+void read_port(const std::string& name, const JsonPlace& place, Housing& housing) {
+  if (is_water_surface(place)) {
+    housing.ports[name] = water_surface_from_json(place);
+    return;
+  }
+  nlohmann::json numbers = place.json;
+  if (place.json.is_object()) numbers.erase(kSigma);
+  HousingPort& port = housing.ports[name];
+  port = to_housing_port(port_from_json({numbers, place.where}));
+  if (!place.has(kSigma)) return;
+  const PortSigmas sigmas = sigmas_from_json(place.at(kSigma), is_dome(port));
+  if (!sigmas.empty()) housing.sigmas[name] = sigmas;
+}
+
 void read_ports(const JsonPlace& place, Housing& housing) {
   if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
   for (const auto& [name, unused] : place.json.items()) {
     if (name == kDry || name.empty())
       fail("{}: '{}' cannot be the name of a port ('none' means no port)", place.where, name);
-    const JsonPlace port = place.at(name);
-    housing.ports[name] = is_water_surface(port) ? HousingPort(water_surface_from_json(port))
-                                                 : to_housing_port(port_from_json(port));
+    read_port(name, place.at(name), housing);
   }
 }
 
@@ -196,6 +216,9 @@ void write_housing(const fs::path& path, const Housing& housing) {
   for (const auto& [name, port] : housing.ports) {
     check_port(port, fmt::format("{}.ports.{}", where, name));
     json["ports"][name] = std::visit(ToJson{}, port);
+    const auto sigmas = housing.sigmas.find(name);
+    if (sigmas != housing.sigmas.end() && !sigmas->second.empty())
+      json["ports"][name][kSigma] = sigmas_to_json(sigmas->second);
   }
   const auto checked = [&](const std::string& name) {
     if (name != kDry && !housing.ports.contains(name))

@@ -9,6 +9,7 @@
 #include <string>
 #include <variant>
 
+#include "io/cameras/port_sigmas.h"
 #include "refractive/port.h"
 #include "scene/scene.h"
 #include "scene/water_surface.h"
@@ -31,6 +32,8 @@ struct Housing {
   std::string default_port = "none";             // a name in `ports`, or "none": no port
   std::map<std::uint32_t, std::string> cameras;  // COLMAP camera id -> port name or "none"
   std::map<std::string, std::string> images;     // end of an image name -> port name or "none"
+  // Standard deviations by name of the port. A port without an entry has no stated ones.
+  std::map<std::string, PortSigmas> sigmas = {};
 
   // Returns the entry of `images` for an image. `image_name` is the name of the image, or a path
   // that ends in this name. An entry matches if its key is the end of `image_name` in whole path
@@ -83,7 +86,8 @@ enum class PortValues { checked, passed_over };
 // Error that names the file, the key and the value for an unknown or missing key, a wrong type, a
 // version other than 1, an unknown port type, a port name that is not defined, an index outside 1
 // to 3, a length outside 0 to 1 m, a zero normal, a flat port's normal whose z is not positive, a
-// dome centre that is not nearer to the camera than 0.9 times the inner radius, a water or glass
+// standard deviation that is not possible (port_sigmas_json.h) or that belongs to a water surface,
+// a dome centre that is not nearer to the camera than 0.9 times the inner radius, a water or glass
 // index below the air index, or a Calibmar file without the key "non_svp_model". A normal whose
 // length differs from 1 by more than 1e-6 is normalised with a warning.
 Housing read_housing(const std::filesystem::path& path, PortValues values = PortValues::checked);

@@ -26,6 +26,7 @@ Housing moved(const Similarity& similarity, Housing housing, bool scale_ports) {
   const double length_factor = scale_ports ? similarity.scale : 1;
   for (auto& [name, port] : housing.ports)
     std::visit([&](auto& one) { move(similarity, length_factor, one); }, port);
+  for (auto& [name, sigmas] : housing.sigmas) sigmas = scaled(sigmas, length_factor);
   return housing;
 }
 

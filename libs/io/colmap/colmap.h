@@ -30,6 +30,9 @@ struct ColmapCamera {
   // In metres and the camera frame; empty: no port. Only the files of COLMAP-Underwater and
   // Calibmar contain ports. If there is a port, `params` describes the lens in air.
   std::optional<refractive::Port<double>> port = std::nullopt;
+  // Standard deviation of the focal lengths, divided by the focal length; empty: not stated. Only
+  // text files state it, in a comment (docs/formats.md).
+  std::optional<double> focal_sigma = std::nullopt;
 };
 
 // An observation: an image point, and the 3D point that it shows.
@@ -87,8 +90,8 @@ std::filesystem::path find_colmap_model(const std::filesystem::path& folder);
 //
 // Error that names the file or the folder for an unknown camera model, a wrong number of
 // parameters, a value that is not finite, a reference to a camera, image or point that does not
-// exist, an id that occurs twice, two images with the same name, a truncated file, or a folder
-// without a complete model.
+// exist, an id that occurs twice, two images with the same name, a focal_sigma that is not possible
+// or belongs to no camera, a truncated file, or a folder without a complete model.
 ColmapModel read_colmap_model(const std::filesystem::path& folder);
 
 // Reads only the cameras. `path` is the folder of a model, a text file or a .bin file with the

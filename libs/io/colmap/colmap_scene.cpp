@@ -312,6 +312,7 @@ Housing housing_by_image(const Housing& housing, const ColmapModel& model, const
                          const ColmapImport& import) {
   Housing resolved;
   resolved.ports = housing.ports;
+  resolved.sigmas = housing.sigmas;
   resolved.default_port = housing.default_port;
   std::vector<std::string> names, paths, ports;
   for (std::size_t i = 0; i < model.images.size(); ++i) {

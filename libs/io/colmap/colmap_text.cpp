@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <map>
+
 #include "base/atomic_file.h"
 #include "private/bytes/text_reader.h"
 #include "private/colmap/colmap_folder.h"
@@ -40,6 +42,40 @@ ColmapCamera parse_camera(TextLine& line) {
   require_no_rest(line);
   check_colmap_camera(camera, line.where());
   return camera;
+}
+
+// The comment "# focal_sigma CAMERA_ID SIGMA".
+constexpr std::string_view kFocalSigma = "focal_sigma";
+
+// A stated standard deviation of focal lengths, and the line that states it.
+struct StatedSigma {
+  double sigma = 0;
+  std::string where;
+};
+using StatedSigmas = std::map<std::uint32_t, StatedSigma>;  // by camera id
+
+// Reads `comment`, the text after '#', if it states a standard deviation.
+void parse_focal_sigma(TextLine comment, StatedSigmas& stated) {
+  if (comment.empty() || comment.word("comment") != kFocalSigma) return;
+  const std::string where = comment.where();
+  const auto id = comment.number<std::uint32_t>("camera id of focal_sigma");
+  const auto sigma = comment.number<double>("focal_sigma");
+  require_no_rest(comment);
+  constexpr double kLeast = 1e-12;  // far below any measurement; its inverse square is finite
+  if (!(sigma >= kLeast && sigma <= 1))
+    fail("{}: focal_sigma of camera {} is {}, expected a value above 0 and at most 1", where, id,
+         sigma);
+  if (!stated.insert({id, {sigma, where}}).second)
+    fail("{}: focal_sigma of camera {} occurs twice", where, id);
+}
+
+void set_focal_sigmas(const StatedSigmas& stated, std::vector<ColmapCamera>& cameras) {
+  for (const auto& [id, sigma] : stated) {
+    const auto camera = std::ranges::find(cameras, id, &ColmapCamera::id);
+    if (camera == cameras.end())
+      fail("{}: focal_sigma names camera {}, which the file does not contain", sigma.where, id);
+    camera->focal_sigma = sigma.sigma;
+  }
 }
 
 ColmapImage parse_image(TextLine& line) {
@@ -95,6 +131,9 @@ std::string cameras_as_text(const ColmapModel& model, Dialect dialect) {
   out += fmt::format("#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]{}\n",
                      underwater ? ", OPTIONAL[REFRAC_MODEL REFRAC_PARAMS[]]" : "");
   out += fmt::format("# Number of cameras: {}\n", model.cameras.size());
+  for (const ColmapCamera& camera : model.cameras)
+    if (camera.focal_sigma)
+      out += fmt::format("# {} {} {}\n", kFocalSigma, camera.id, *camera.focal_sigma);
   for (const ColmapCamera& camera : model.cameras) {
     out += fmt::format("{} {} {} {} {}", camera.id, camera.model, camera.width, camera.height,
                        fmt::join(camera.params, " "));
@@ -154,7 +193,15 @@ std::vector<ColmapCamera> read_cameras_text(const fs::path& path) {
   const std::string bytes = read_file(path);
   TextReader reader(bytes, path.string());
   std::vector<ColmapCamera> cameras;
-  while (auto line = reader.record()) cameras.push_back(parse_camera(*line));
+  StatedSigmas stated;
+  while (auto line = reader.line()) {
+    if (line->empty()) continue;
+    if (line->rest().front() == '#')
+      parse_focal_sigma(line->after('#'), stated);
+    else
+      cameras.push_back(parse_camera(*line));
+  }
+  set_focal_sigmas(stated, cameras);
   return cameras;
 }
 

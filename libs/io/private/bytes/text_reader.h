@@ -58,6 +58,13 @@ class TextLine {
     return *value;
   }
 
+  // The same line after its first `sign`. Precondition: the part that is not read yet contains it.
+  TextLine after(char sign) const {
+    TextLine later = *this;
+    later.text_.remove_prefix(text_.find(sign) + 1);
+    return later;
+  }
+
   // The part that is not read yet, without blanks around it.
   std::string_view rest() const { return trimmed(text_); }
 

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/cameras/port_sigmas.h"
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "private/cameras/port_sigmas_json.h"
+
+namespace axial::io {
+namespace {
+
+using Json = nlohmann::json;
+
+// Far below any measurement; the inverse square of the value is finite.
+constexpr double kLeast = 1e-12;
+constexpr double kLargestAngle = 90, kLargestLength = 1, kLargestIndex = 1;
+
+double sigma(const Json& value, const std::string& where, double largest) {
+  const bool possible =
+      value.is_number() && value.get<double>() >= kLeast && value.get<double>() <= largest;
+  if (!possible)
+    fail("{} is {}, expected a standard deviation above 0 and at most {}", where, to_text(value),
+         largest);
+  return value.get<double>();
+}
+
+std::optional<double> number(const JsonPlace& place, const char* key, double largest) {
+  if (!place.has(key)) return {};
+  const JsonPlace value = place.at(key);
+  return sigma(value.json, value.where, largest);
+}
+
+template <int Size>
+std::optional<Eigen::Vector<double, Size>> list(const JsonPlace& place, const char* key,
+                                                double largest) {
+  if (!place.has(key)) return {};
+  const auto& [json, where] = place.at(key);
+  if (!json.is_array()) return Eigen::Vector<double, Size>::Constant(sigma(json, where, largest));
+  if (json.size() != Size)
+    fail("{} is {}, expected a number or {} numbers", where, to_text(json), Size);
+  Eigen::Vector<double, Size> sigmas;
+  for (int k = 0; k < Size; ++k)
+    sigmas(k) = sigma(json[static_cast<std::size_t>(k)], fmt::format("{}[{}]", where, k), largest);
+  return sigmas;
+}
+
+template <class Vector>
+Json to_json(const Vector& sigmas) {
+  return std::vector<double>(sigmas.begin(), sigmas.end());
+}
+
+}  // namespace
+
+PortSigmas scaled(PortSigmas sigmas, double factor) {
+  if (sigmas.distance) *sigmas.distance *= factor;
+  if (sigmas.centre) *sigmas.centre *= factor;
+  if (sigmas.thickness) *sigmas.thickness *= factor;
+  return sigmas;
+}
+
+PortSigmas sigmas_from_json(const JsonPlace& place, bool is_dome) {
+  PortSigmas sigmas;
+  if (is_dome) {
+    place.require_object({"center_m", "thickness_m", "n_water"});
+    sigmas.centre = list<3>(place, "center_m", kLargestLength);
+  } else {
+    place.require_object({"normal_degrees", "distance_m", "thickness_m", "n_water"});
+    sigmas.normal_degrees = list<2>(place, "normal_degrees", kLargestAngle);
+    sigmas.distance = number(place, "distance_m", kLargestLength);
+  }
+  sigmas.thickness = number(place, "thickness_m", kLargestLength);
+  sigmas.index = number(place, "n_water", kLargestIndex);
+  return sigmas;
+}
+
+Json sigmas_to_json(const PortSigmas& sigmas) {
+  Json object = Json::object();
+  if (sigmas.normal_degrees) object["normal_degrees"] = to_json(*sigmas.normal_degrees);
+  if (sigmas.distance) object["distance_m"] = *sigmas.distance;
+  if (sigmas.centre) object["center_m"] = to_json(*sigmas.centre);
+  if (sigmas.thickness) object["thickness_m"] = *sigmas.thickness;
+  if (sigmas.index) object["n_water"] = *sigmas.index;
+  return object;
+}
+
+}  // namespace axial::io
