@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "base/same_file.h"
 #include "base/unused_input.h"
+#include "effective_lens.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/housing.h"
 #include "io/cameras/other_ports.h"
@@ -343,10 +344,21 @@ void finish(const Options& options, const Input& input, const pose::ColmapBundle
   write(options, refined, input.model, frame, result, results);
 }
 
+int run_effective_lens(const Options& options) {
+  const std::vector<fs::path> inputs{options.lens, options.housing};
+  require_not_an_input(options.effective_lens, inputs, "--effective-lens");
+  const io::Housing housing = io::read_housing(options.housing);
+  io::refuse_water_surfaces(housing, options.housing);
+  write_effective_lenses(options.effective_lens, load_lenses(options, {}), housing,
+                         options.scene_distance, options.lens);
+  return 0;
+}
+
 int run(int argc, char** argv) {
   Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   const ThreadLimit threads(options.parsed.common.max_threads);
+  if (!options.effective_lens.empty()) return run_effective_lens(options);
   const Input input = read_input(options);
   pose::ColmapBundle refined = load(options, input.model, input.lenses, input.housing);
   check_ports(options, input, refined.bundle);

@@ -14,10 +14,23 @@ namespace {
 
 // The options as text, before they are checked.
 struct Texts {
-  std::string input, lens, housing, output;
+  std::string input, lens, housing, output, effective_lens;
 };
 
+void check_effective_lens(const Options& options) {
+  if (!(options.scene_distance > 0 && std::isfinite(options.scene_distance)))
+    fail("--scene-distance {}: must be positive", options.scene_distance);
+  for (const char* other : {"input-file", "output-folder", "scale-from", "refine"})
+    if (given(options.parsed, other))
+      fail("--effective-lens {}: contradicts --{}", options.effective_lens.string(), other);
+  if (options.lens.empty()) fail("--lens is missing: the lens calibrated in air");
+  if (options.housing.empty()) fail("--housing is missing: the port of the camera");
+}
+
 void check(const Options& options) {
+  if (!options.effective_lens.empty()) return check_effective_lens(options);
+  if (given(options.parsed, "scene-distance"))
+    fail("--scene-distance {}: is for --effective-lens", options.scene_distance);
   if (!(options.scale_sigma > 0 && std::isfinite(options.scale_sigma)))
     fail("--scale-sigma {}: must be positive", options.scale_sigma);
   if (!(options.refine.tracks.max_error > 0))
@@ -36,7 +49,7 @@ void check(const Options& options) {
   if (options.output.empty()) fail("--output-folder is missing");
 }
 
-void declare_files(OptionList& visible, Texts& texts) {
+void declare_files(OptionList& visible, Texts& texts, Options& options) {
   visible
       .add("input-file,i", &texts.input,
            "COLMAP folder of the raw underwater photographs, with any camera models: the model is "
@@ -49,7 +62,13 @@ void declare_files(OptionList& visible, Texts& texts) {
            "housing file with the ports of the cameras; a model of COLMAP-Underwater and "
            "Calibmar's file contain them")
       .add("output-folder,o", &texts.output,
-           "folder for sparse/ (COLMAP text, lens in air), housing.json and report.json");
+           "folder for sparse/ (COLMAP text, lens in air), housing.json and report.json")
+      .add("effective-lens", &texts.effective_lens,
+           "instead of refining poses, write this cameras.txt: the single lens that images nearly "
+           "as "
+           "the lens in air behind its port, for COLMAP to start with")
+      .add_with_default("scene-distance", &options.scene_distance,
+                        "distance of the scene for --effective-lens [m]");
 }
 
 // What is estimated, from which observations, and what is known.
@@ -105,8 +124,9 @@ Options parse_command_line(int argc, const char* const* argv) {
       {},
       {}};
   program.version = version_line(program.name);
+  program.instead_of_input = "effective-lens";
   // In the order of --help.
-  declare_files(program.visible, texts);
+  declare_files(program.visible, texts, options);
   declare_estimate(program.visible, options);
   UnusedInput::declare(program.visible, options.allow_missing);
   options.parsed = parse_options(argc, argv, program);
@@ -116,6 +136,10 @@ Options parse_command_line(int argc, const char* const* argv) {
   options.lens = in_working_folder(common, texts.lens);
   options.housing = in_working_folder(common, texts.housing);
   options.output = folder_in_working_folder(common, texts.output, "--output-folder");
+  options.effective_lens =
+      texts.effective_lens.empty()
+          ? std::filesystem::path()
+          : output_in_working_folder(common, texts.effective_lens, "--effective-lens");
   check(options);
   return options;
 }

@@ -13,15 +13,17 @@ namespace axial::apps {
 
 struct Options {
   ParsedOptions parsed;
-  std::filesystem::path model;    // COLMAP folder
-  std::filesystem::path lens;     // COLMAP cameras in air: a file or a model's folder
-  std::filesystem::path housing;  // housing file
-  std::filesystem::path output;   // output folder
-  bool underwater = false;        // also write the model for COLMAP-Underwater
-  std::string poses = "adjust";   // "adjust" or "known"
-  bool allow_missing = false;     // no error if the known scale cannot be used
-  std::string scale_from;         // see scale_from.h; empty: refraction alone determines the scale
-  double scale_sigma = 0.001;     // standard deviation of the known lengths [m]
+  std::filesystem::path model;           // COLMAP folder
+  std::filesystem::path lens;            // COLMAP cameras in air: a file or a model's folder
+  std::filesystem::path housing;         // housing file
+  std::filesystem::path output;          // output folder
+  std::filesystem::path effective_lens;  // file; empty: refines poses
+  double scene_distance = 2;             // of effective_lens [m]
+  bool underwater = false;               // also write the model for COLMAP-Underwater
+  std::string poses = "adjust";          // "adjust" or "known"
+  bool allow_missing = false;            // no error if the known scale cannot be used
+  std::string scale_from;      // see scale_from.h; empty: refraction alone determines the scale
+  double scale_sigma = 0.001;  // standard deviation of the known lengths [m]
   std::vector<std::string> dropped_positions;  // lines of add_known() (scale_from.h)
   std::string refine_list;                     // `refine` of pose::set_free_numbers()
   pose::Sigmas sigmas;

@@ -223,8 +223,10 @@ struct KnownOptions {
   KnownOptions(const KnownOptions&) = delete;  // common_options() refers to working_folder
 
   bool has_input() const { return command_line.find_nothrow("input-file", false) != nullptr; }
-  bool lacks_input(const po::variables_map& values) const {
-    return has_input() && !values.count("input-file");
+  bool lacks_input(const po::variables_map& values, const ProgramOptions& program) const {
+    const bool may_lack =
+        !program.instead_of_input.empty() && values.count(program.instead_of_input) > 0;
+    return has_input() && !values.count("input-file") && !may_lack;
   }
 
   std::string working_folder;
@@ -317,7 +319,7 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
     po::notify(values);
     for (const auto& [name, value] : values)
       if (given_in(values, name)) parsed.given.insert(name);
-    if (const bool help = values.count("help") > 0; help || known.lacks_input(values)) {
+    if (const bool help = values.count("help") > 0; help || known.lacks_input(values, program)) {
       print_help(program);
       parsed.exit_code = help ? 0 : 1;
       if (!help) std::cerr << program.name << ": no input file given (-i FILE)\n";

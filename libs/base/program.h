@@ -38,6 +38,8 @@ struct ProgramOptions {
   // output that this program adds at -v 3 and above.
   std::string when_verbose = "";
   std::string version = "";  // the line that --version prints (base/version.h)
+  // The long name of an option with which --input-file may be absent; empty: there is none.
+  std::string instead_of_input = "";
 };
 
 // The result of parse_options().
