@@ -165,7 +165,7 @@ class OnThisMachine(Survey):
         self.assertNotIn("rule densify:", said)
         self.check("out")
         # Alone, nothing is left to do.
-        self.assertEqual(self.reconstruct("out").count("done before"), 10)
+        self.assertEqual(self.reconstruct("out").count("done before"), 11)
         self.assertNotIn("\nrule ", self.reconstruct("out", "--cluster", "local"))
 
     def test_uses_complete_depth_maps_for_other_options_of_the_fusion(self):

@@ -77,7 +77,7 @@ class Matching(InFolder):
         self.put_script("colmap", f"echo '{options}'")
 
     def given(self, matcher, scale_from="", vocabulary=""):
-        return argparse.Namespace(matcher=matcher, scale_from=scale_from, vocabulary=vocabulary,
+        return argparse.Namespace(matches="", matcher=matcher, scale_from=scale_from, vocabulary=vocabulary,
                                   images=str(self.folder / "images"))
 
     def with_positions(self):
@@ -255,7 +255,7 @@ class WithColmap(InFolder):
 
     def matched(self, images, scale_from=""):
         """The pairs that COLMAP compares with two neighbours of each photograph."""
-        given = argparse.Namespace(matcher="spatial", scale_from=scale_from, vocabulary="",
+        given = argparse.Namespace(matches="", matcher="spatial", scale_from=scale_from, vocabulary="",
                                    images=str(images))
         features, database = self.folder / "features.db", self.folder / "database.db"
         with unittest.mock.patch.object(matching, "NEIGHBOURS", 2):

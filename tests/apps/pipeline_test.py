@@ -79,17 +79,6 @@ class ColmapModels(InFolder):
         with self.assertRaisesRegex(Failure, "COLMAP found no poses: see mapper.log"):
             colmap.largest(self.folder / "models", "mapper.log")
 
-    def test_reconstruct_tells_of_the_models_that_it_leaves(self):
-        for number, images in enumerate((3, 9, 2)):
-            self.model(number, images)
-        said = self.said_by(reconstruct_steps.take_largest, self.folder / "models")
-        self.assertEqual(colmap.registered(self.folder / "models" / "best"), 9)
-        self.assertIn("9 images have poses", said)
-        self.assertIn("2 more models, of 3, 2 images", said)
-
-    def test_reconstruct_tells_of_no_others_if_there_is_one(self):
-        self.model(0, 4)
-        self.assertNotIn("more", self.said_by(reconstruct_steps.take_largest, self.folder / "models"))
 
 
 # A stand-in for COLMAP that writes its commands to the file `commands`. The mapper finds two models.

@@ -90,7 +90,7 @@ class OtherFiles(FilesCase):
         self.assertIn(f"Poses: {self.folder}/out/refined", said)
         self.assertTrue((self.folder / "out" / "report.md").exists())
         self.assertFalse((self.folder / "out" / "scene.mvs").exists())
-        self.assertEqual(self.succeeds("--until", "cloud").count("done before"), 4)
+        self.assertEqual(self.succeeds("--until", "cloud").count("done before"), 5)
         for options, line in [
                 (("--truth", "lens"), f"--truth {self.folder}/lens: is compared with the cloud, which --until "
                  "poses does not make"),
@@ -109,9 +109,9 @@ class OtherFiles(FilesCase):
             record = json.loads(path.read_text())
             path.write_text(json.dumps({key: value for key, value in record.items()
                                         if key not in ("makes", "ended")}))
-        self.assertEqual(self.succeeds().count("done before"), 10)
+        self.assertEqual(self.succeeds().count("done before"), 11)
         (records / "poses.done.json").unlink()  # killed there
-        self.assertEqual(self.succeeds("--map=--hillshade").count("done before"), 2)
+        self.assertEqual(self.succeeds("--map=--hillshade").count("done before"), 3)
         (records / "features.done.json").write_text("")
         (records / "features.begun.json").write_text("")
         self.assertEqual(self.succeeds().count("done before"), 0)
@@ -279,7 +279,7 @@ class DamagedFiles(FilesCase):
         self.succeeds()
         for damaged in ("", "{", "[1]", "[" * 100000, b"\xff"):
             self.put("out/refined/report.json", damaged)
-            self.assertEqual(self.succeeds().count("done before"), 3)
+            self.assertEqual(self.succeeds().count("done before"), 4)
 
     def test_a_report_of_another_version_is_named(self):
         self.succeeds()
@@ -297,9 +297,9 @@ class DamagedFiles(FilesCase):
         for damaged in ("[" * 100000, json.dumps({**whole, "seconds": "1"}), b"\xff\xfe",
                         json.dumps({**whole, "seconds": float("nan")})):
             self.put("out/steps/map.done.json", damaged)
-            self.assertEqual(self.succeeds().count("done before"), 9)
+            self.assertEqual(self.succeeds().count("done before"), 10)
         self.put("out/steps/map.done.json", json.dumps({"chain": whole["chain"]}))
-        self.assertEqual(self.succeeds().count("done before"), 10)
+        self.assertEqual(self.succeeds().count("done before"), 11)
 
 
 class Masks(FilesCase):
@@ -341,7 +341,7 @@ class Masks(FilesCase):
     def test_changed_masks_begin_anew(self):
         mask = self.put("masks/0.png")
         options = ["--masks", "masks"]
-        self.assertEqual([self.succeeds(*options).count("done before") for _ in range(2)], [0, 11])
+        self.assertEqual([self.succeeds(*options).count("done before") for _ in range(2)], [0, 12])
         mask.write_text("changed")
         self.assertEqual(self.succeeds(*options).count("done before"), 0)
         self.assertEqual(self.succeeds().count("done before"), 0)
@@ -369,14 +369,14 @@ class OutOfDate(FilesCase):
     def test_changed_files_below_relative_paths_are_noticed(self):
         """DensifyPointCloud works in the output folder, the other programs in that of the command."""
         for program, option, file, done in (
-                ("DensifyPointCloud", "--densify=--mask-path own", "out/own/deep/0.png", 5),
-                ("DensifyPointCloud", "--densify=--iters 2 -c a.cfg", "out/a.cfg", 5),
-                ("TextureMesh", "--texture=--mask-path own", "own/deep/0.png", 8),
-                ("RefineMesh", "--refine-mesh=--scales 1", "RefineMesh.cfg", 7)):
+                ("DensifyPointCloud", "--densify=--mask-path own", "out/own/deep/0.png", 6),
+                ("DensifyPointCloud", "--densify=--iters 2 -c a.cfg", "out/a.cfg", 6),
+                ("TextureMesh", "--texture=--mask-path own", "own/deep/0.png", 9),
+                ("RefineMesh", "--refine-mesh=--scales 1", "RefineMesh.cfg", 8)):
             shutil.rmtree(self.folder / "out", ignore_errors=True)
             self.put(file)
             self.succeeds(option)
-            self.assertEqual(self.succeeds(option).count("done before"), 10, program)
+            self.assertEqual(self.succeeds(option).count("done before"), 11, program)
             self.put(file, "changed")
             self.assertEqual(self.succeeds(option).count("done before"), done, program)
 
@@ -387,9 +387,9 @@ class OutOfDate(FilesCase):
         self.put("linked/1.png")
         self.succeeds()
         for file in ("out/own/0.png", "linked/1.png", "out/DensifyPointCloud.cfg"):
-            self.assertEqual(self.succeeds().count("done before"), 10)
+            self.assertEqual(self.succeeds().count("done before"), 11)
             self.put(file, f"changed mask-path = own {file}")
-            self.assertEqual(self.succeeds().count("done before"), 5, file)
+            self.assertEqual(self.succeeds().count("done before"), 6, file)
             self.put("out/DensifyPointCloud.cfg", "# masks\nmask-path = own\n")
             self.succeeds()
 
@@ -398,7 +398,7 @@ class OutOfDate(FilesCase):
             script.write("mkdir -p out/export; date +%N > out/export/a; date +%N > out/log\n")
         options = ["--densify=--pinhole-export export --log-file=log"]
         self.succeeds(*options)
-        self.assertEqual(self.succeeds(*options).count("done before"), 10)
+        self.assertEqual(self.succeeds(*options).count("done before"), 11)
 
     def test_an_earlier_mesh_that_is_out_of_date_is_not_taken(self):
         with unittest.mock.patch("builtins.print"):

@@ -27,7 +27,7 @@ class WithStandIns(StandIns):
         (self.folder / "pipe-DensifyPointCloud").unlink()
         again = self.ended()
         self.assertEqual(again.returncode, 0, again.stderr)
-        self.assertEqual(again.stdout.count("done before"), 5, again.stdout)
+        self.assertEqual(again.stdout.count("done before"), 6, again.stdout)
 
     def test_takes_a_wrappers_child_along_however_it_ends(self):
         """Tried with the first program, a middle one and the last one."""
@@ -62,8 +62,8 @@ class WithStandIns(StandIns):
 
     def test_prints_the_commands_that_it_runs(self):
         said = self.ended().stdout.splitlines()
-        printed = [said[said.index(f"[{number}/10] {step}") + 1].removeprefix(" " * 4)
-                   for number, step in enumerate(STEPS[:10], 1)]
+        printed = [said[said.index(f"[{number}/11] {step}") + 1].removeprefix(" " * 4)
+                   for number, step in enumerate(STEPS[:11], 1)]
         run_were = (self.folder / "commands").read_text().splitlines()
         self.assertEqual([" ".join([pathlib.Path(program).name, *arguments]) for program, *arguments
                           in map(shlex.split, printed)], run_were)
@@ -107,7 +107,7 @@ class WithStandIns(StandIns):
         first = self.ended(*again)
         self.assertEqual(first.returncode, 0, first.stderr)
         shown = json.loads((self.folder / "shown.json").read_text())
-        self.assertEqual([step["name"] for step in shown["steps"]], STEPS[:10])
+        self.assertEqual([step["name"] for step in shown["steps"]], STEPS[:11])
         steps = {step["name"]: step for step in shown["steps"]}
         self.assertEqual(steps["densify"]["warnings"], [{"text": "far away", "times": 2}])
         self.assertEqual(steps["poses"]["warnings"], [{"text": "ba.cc:7] no convergence", "times": 1}])
@@ -124,9 +124,9 @@ class WithStandIns(StandIns):
             self.assertEqual(command[command.index(option) + 1], value)
 
         second = self.ended(*again)
-        self.assertEqual(second.stdout.count("done before"), 12, second.stdout)
+        self.assertEqual(second.stdout.count("done before"), 13, second.stdout)
         third = self.ended(*again, "--page=--map other")
-        self.assertEqual(third.stdout.count("done before"), 10, third.stdout)
+        self.assertEqual(third.stdout.count("done before"), 11, third.stdout)
         self.assertEqual((self.folder / "commands").read_text().count("--map "), 2)
 
     def test_other_options_redo_the_steps_after_them(self):
@@ -141,24 +141,24 @@ class WithStandIns(StandIns):
             return ended.stdout.count("done before")
 
         self.assertEqual(done_before(), 0)
-        self.assertEqual(done_before(), 10)
-        for option, kept in [("--map=--hillshade", 9), ("--texture=--outlier-threshold 0.1", 8),
-                             ("--refine-mesh=--scales 1", 7), ("--mesh=--smooth 1", 6),
-                             ("--densify=--resolution-level 1", 5)]:
+        self.assertEqual(done_before(), 11)
+        for option, kept in [("--map=--hillshade", 10), ("--texture=--outlier-threshold 0.1", 9),
+                             ("--refine-mesh=--scales 1", 8), ("--mesh=--smooth 1", 7),
+                             ("--densify=--resolution-level 1", 6)]:
             options.append(option)
             self.assertEqual(done_before(), kept, option)
         positions.write_text(positions.read_text() + "\n")
-        self.assertEqual(done_before(), 3)
+        self.assertEqual(done_before(), 4)
         options += ["--matcher", "spatial"]
-        self.assertEqual(done_before(), 1)
+        self.assertEqual(done_before(), 2)
         command = (self.folder / "commands").read_text().splitlines()[-9]
         self.assertIn(f"colmap spatial_matcher --database_path {self.folder}/out/database.db "
                       "--SpatialMatching.is_gps 0", command)
         positions.write_text(positions.read_text() + "\n")
-        self.assertEqual(done_before(), 1)
+        self.assertEqual(done_before(), 2)
         options += ["--matcher", "vocabulary", "--vocabulary", "lens"]
-        self.assertEqual(done_before(), 1)
-        self.assertEqual(done_before(), 10)
+        self.assertEqual(done_before(), 2)
+        self.assertEqual(done_before(), 11)
 
     def test_an_earlier_survey_is_compared(self):
         (self.folder / "before").mkdir()
@@ -188,9 +188,9 @@ class WithStandIns(StandIns):
         options = ["--earlier", "before", "--without", "map,page"]
         scene.touch()
         self.assertEqual(self.ended(*options).stdout.count("done before"), 0)
-        self.assertEqual(self.ended(*options).stdout.count("done before"), 10)
+        self.assertEqual(self.ended(*options).stdout.count("done before"), 11)
         scene.write_text("other")
-        self.assertEqual(self.ended(*options).stdout.count("done before"), 9)
+        self.assertEqual(self.ended(*options).stdout.count("done before"), 10)
 
     def test_its_own_mesh_is_no_earlier_survey(self):
         self.assertEqual(self.ended("--without", "map,page").returncode, 0)

@@ -16,7 +16,7 @@ import unittest
 from programs import BIN, main, read, run
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
-STEPS = ["features", "matches", "poses", "refine", "import", "densify", "mesh",
+STEPS = ["features", "lens", "matches", "poses", "refine", "import", "densify", "mesh",
          "refine-mesh", "texture", "map", "evaluate"]
 PAGE = pathlib.Path(BIN).resolve().parent / "share" / "axialmvs" / "view" / "viewer.js"
 if PAGE.exists():

@@ -39,14 +39,22 @@ def on_the_cpu(command, families, threads=None):
     return []
 
 
-def features(database, images, camera_model, parameters=None, threads=None, masks=None):
+def features(database, images, camera_model, parameters=None, threads=None, masks=None, more=()):
     """Extracts features. All photographs share one camera. `parameters`: those that the camera
-    starts with, in COLMAP's order. `masks`: a folder with COLMAP's masks (masks.py)."""
+    starts with, in COLMAP's order. `masks`: a folder with COLMAP's masks (masks.py). `more`: further
+    options."""
     start = ["--ImageReader.camera_params", parameters] if parameters else []
     start += ["--ImageReader.mask_path", masks] if masks else []
     return ["colmap", "feature_extractor", "--database_path", database, "--image_path", images,
             "--ImageReader.single_camera", 1, "--ImageReader.camera_model", camera_model, *start,
-            *on_the_cpu("feature_extractor", EXTRACTION, threads)]
+            *on_the_cpu("feature_extractor", EXTRACTION, threads), *more]
+
+
+def weak_features(names, threshold):
+    """The options for features with little contrast, of the photographs that the file `names` lists."""
+    known = help_of("feature_extractor")
+    family = next((family for family in EXTRACTION if f"--{family}.peak_threshold " in known), EXTRACTION[0])
+    return ["--image_list_path", names, f"--{family}.peak_threshold", threshold]
 
 
 def matches(database, matcher, threads=None, more=()):
@@ -57,16 +65,16 @@ def matches(database, matcher, threads=None, more=()):
             *on_the_cpu(command, MATCHING, threads)]
 
 
-def mapper(database, images, models, refine=None, threads=None):
+def mapper(database, images, models, refine=None, threads=None, more=()):
     """Writes a numbered model into `models` for each group of images that COLMAP can join.
     `refine`: whether COLMAP refines the focal lengths and the distortion; if it is not given, COLMAP
-    decides."""
+    decides. `more`: further options."""
     limit = [] if threads is None else ["--Mapper.num_threads", threads]
     refined = [] if refine is None else [
         "--Mapper.ba_refine_focal_length", int(refine), "--Mapper.ba_refine_principal_point", 0,
         "--Mapper.ba_refine_extra_params", int(refine)]
     return ["colmap", "mapper", "--database_path", database, "--image_path", images,
-            "--output_path", models, *limit, *refined]
+            "--output_path", models, *limit, *refined, *more]
 
 
 # What the mapper prints when it finds no poses.
@@ -92,6 +100,26 @@ def registered(model):
     return sum(bool(line) for line in [line for line in lines if not line.startswith("#")][::2])
 
 
+def names_in(model):
+    """The names of the images of a model, binary or text. Empty if the file is damaged."""
+    if not (model / "images.bin").is_file():
+        lines = (model / "images.txt").read_text().splitlines()
+        return {line.split(" ", 9)[9] for line in [line for line in lines if not line.startswith("#")][::2] if line}
+    data, names, at = (model / "images.bin").read_bytes(), set(), 8
+    try:
+        for _ in range(struct.unpack_from("<Q", data)[0]):
+            end = data.index(b"\0", at + 64)  # after the id, the pose and the id of the camera
+            names.add(data[at + 64:end].decode(errors="replace"))
+            at = end + 9 + 24 * struct.unpack_from("<Q", data, end + 1)[0]
+    except (struct.error, ValueError):
+        return set()
+    return names
+
+
+def no_poses(log):
+    return Failure(f"COLMAP found no poses: see {log}")
+
+
 def by_size(models):
     """The models in the folder `models` and their numbers of images, the largest model first."""
     found = [(registered(model), model) for model in models.iterdir() if is_model(model)]
@@ -102,5 +130,5 @@ def largest(models, log):
     """The first of by_size(). `log`: the mapper's, for the Failure if there is no model."""
     found = by_size(models)
     if not found:
-        raise Failure(f"COLMAP found no poses: see {log}")
+        raise no_poses(log)
     return found[0]

@@ -9,6 +9,7 @@ import sqlite3
 
 from . import colmap, files, gps, positions
 from .failure import Failure
+from .programs import words_of
 from .steps import Step
 
 MATCHERS = ("exhaustive", "sequential", "spatial", "vocabulary")
@@ -74,13 +75,15 @@ def more_options(given):
             "--SpatialMatching.max_distance", FARTHEST]
 
 
-def step(given, features, database):
-    """The step that copies the database `features` to `database` and adds matches."""
+def step(given, features, database, prepare=lambda: None, reads=()):
+    """The step that copies the database `features` to `database` and adds matches. `prepare`: called before
+    photographs are matched. `reads`: what it reads."""
     file = positions.file_of(given.scale_from) if given.matcher == "spatial" else None
-    reads = [path for path in (file, given.vocabulary) if path]
+    reads = [path for path in (file, given.vocabulary, *reads) if path]
 
     def before():
         files.copy_once(features, database)
+        prepare()
         if given.matcher == "spatial":
             try:
                 prepare_positions(database, file)
@@ -88,7 +91,8 @@ def step(given, features, database):
                 raise Failure(f"{features}: is not a database of COLMAP, or is damaged ({error}); remove "
                               "it, and the same command makes it again") from None
 
-    return Step("matches", colmap.matches(database, given.matcher, more=more_options(given)),
+    return Step("matches", colmap.matches(database, given.matcher, 
+                                         more=[*more_options(given), *words_of("matches", given)]),
                 makes=database, reads=reads, changed=colmap.database_files(database), before=before)
 
 

@@ -25,7 +25,9 @@ CHANGES = ("difference.tif", "sigma.tif", "significant.tif", "json", "jpg")
 # kind of file, because users put their own beside them, such as scene_map.qgz of QGIS.
 WRITES = {
     "masks": ["colmap_masks"],
-    "features": ["features.db", "features.db-*", "still_features.json", "still_features.png"],
+    "features": ["features.db", "features.db-*", "still_features.json", "still_features.png",
+                 "weak_features.*"],
+    "lens": ["start_lens.txt"],
     "matches": ["database.db", "database.db-*", "database.db.tmp"],
     "poses": ["colmap"],
     "refine": ["refined"],

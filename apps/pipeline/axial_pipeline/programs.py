@@ -2,6 +2,9 @@
 """The commands of AxialMVS's programs, as lists of words. Nothing is run here."""
 
 import pathlib
+import shlex
+
+from .failure import Failure
 
 PACKAGE = pathlib.Path(__file__).resolve().parent
 
@@ -12,6 +15,15 @@ def default_folder(script_folder):
     if (script_folder / "DensifyPointCloud").exists():
         return script_folder
     return PACKAGE.parents[2] / "build" / "release" / "bin"
+
+
+def words_of(name, given):
+    """The words in the value of the option --`name`, which are options for a program."""
+    value = getattr(given, name.replace("-", "_"))
+    try:
+        return shlex.split(value)
+    except ValueError as error:
+        raise Failure(f"--{name} {value}: {error}") from None
 
 
 class Programs:
@@ -31,6 +43,10 @@ class Programs:
         """The masks of photographs as COLMAP wants them, in `folder`. `label`: of masked pixels."""
         return [self.folder / "InterfaceCOLMAP", "-i", images, "--mask-path", masks,
                 "--ignore-mask-label", label, "-o", folder]
+
+    def effective_lens(self, lens, housing, file):
+        """The lens in air behind its port to one lens for COLMAP, `file`."""
+        return [self.folder / "RefinePoses", "--effective-lens", file, "--lens", lens, "--housing", housing]
 
     def densify(self, scene, folder, *options):
         """`scene` to depth maps and a dense cloud in `folder`."""

@@ -17,7 +17,7 @@ nodes of a cluster compute the depth maps (docs/cluster.md).
 import fcntl
 import pathlib
 
-from . import cluster, files, ownership, still_features
+from . import cluster, files, ownership, poses, still_features
 from .failure import Failure, run_main
 from .reconstruct_options import check, options, wanted_steps
 from .reconstruct_steps import best_mesh, steps
@@ -63,6 +63,7 @@ def report(out, seconds):
     if "evaluate" in seconds:
         lines += lines_from(out / "evaluation.json", lines_of_accuracy)
     lines += [f"- warning: {line}" for line in still_features.lines_about(out)]
+    lines += [f"- {line}" for line in poses.lines_about(out)]
     lines += ["", "| step | seconds |", "|---|---|"]
     lines += [f"| {name} | {time} |" for name, time in seconds.items()]
     return "\n".join(lines) + "\n"

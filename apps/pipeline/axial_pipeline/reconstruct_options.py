@@ -5,18 +5,18 @@ import argparse
 import fnmatch
 import os
 import pathlib
-import shlex
 
-from . import cluster, colmap, files, masks, matching, photographs, positions
+from . import cluster, colmap, database, files, masks, matching, photographs, positions
 from .failure import Failure
 from .option_files import find_option, has_option
 from .ownership import ORDER, WRITES, is_record
-from .programs import Programs, default_folder
+from .programs import Programs, default_folder, words_of
 
 PROGRAMS = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh",
             "TextureMesh", "MapSurface", "CompareSurveys", "ViewScene")
 # Options whose values are options for a program, and this program.
-MORE_OPTIONS = {"refine-poses": "RefinePoses", "densify": "DensifyPointCloud",
+MORE_OPTIONS = {"features": "COLMAP's feature_extractor", "matches": "COLMAP's matcher",
+                "poses": "COLMAP's mapper", "refine-poses": "RefinePoses", "densify": "DensifyPointCloud",
                 "mesh": "ReconstructMesh", "refine-mesh": "RefineMesh", "texture": "TextureMesh",
                 "map": "MapSurface", "compare": "CompareSurveys", "page": "ViewScene"}
 RESULTS = ("poses", "cloud", "mesh", "texture", "map", "page")
@@ -44,9 +44,11 @@ def options(script_folder, description):
                         "in space, or images that look alike (default: %(default)s)")
     parser.add_argument("--vocabulary", default="",
                         help="vocabulary tree for COLMAP, for --matcher vocabulary")
-    parser.add_argument("--lens-model", default="OPENCV",
-                        help="lens model that COLMAP calibrates; it absorbs the refraction "
-                        "(default: %(default)s)")
+    parser.add_argument("--lens-model", default="", choices=("", *database.LENS_MODELS), metavar="MODEL",
+                        help="lens model that COLMAP calibrates, so that it absorbs the refraction (default: COLMAP "
+                        "keeps the lens that lens and port give; if photographs have no pose then, it calibrates "
+                        "this lens)")
+    parser.add_argument("--keep-all", action="store_true", help="use blurred photographs, too")
     for name, program in MORE_OPTIONS.items():
         parser.add_argument(f"--{name}", default="",
                             help=f"more options for {program}, in one word" +
@@ -75,15 +77,6 @@ def options(script_folder, description):
     parser.add_argument("--programs", default=programs,
                         help="folder of the programs (default: %(default)s)")
     return parser.parse_args()
-
-
-def words_of(name, given):
-    """The words in the value of the option --`name`, which are options for a program."""
-    value = getattr(given, name.replace("-", "_"))
-    try:
-        return shlex.split(value)
-    except ValueError as error:
-        raise Failure(f"--{name} {value}: {error}") from None
 
 
 # Options of programs that contradict tiles, which `reconstruct` asks for.

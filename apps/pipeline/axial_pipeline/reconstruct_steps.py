@@ -3,24 +3,13 @@
 
 import pathlib
 
-from . import colmap, lens, masks, matching, positions, still_features
+from . import colmap, features, masks, matching, poses, positions, start_lens, still_features
 from .option_files import find_option, has_option, read_by
 from .ownership import WRITES
-from .programs import Programs
-from .reconstruct_options import wanted_steps, words_of
+from .programs import Programs, words_of
+from .reconstruct_options import wanted_steps
 from .run_file import write_run
 from .steps import Files, Report, Step, Tiles
-
-
-def take_largest(models):
-    """Renames the model with the most images to models/best."""
-    best, count = colmap.largest(models, models.parent / "logs" / "poses.log")
-    others = [str(size) for _, size in colmap.by_size(models)[1:]]
-    print(f"    {count} images have poses", flush=True)
-    if others:
-        print(f"    COLMAP could not join all images: {len(others)} more models, of "
-              f"{', '.join(others)} images, remain in {models}", flush=True)
-    best.rename(models / "best")
 
 
 def masks_of(given, out):
@@ -28,22 +17,48 @@ def masks_of(given, out):
     return out / masks.FOLDER if given.masks else None
 
 
+def features_command(given, out):
+    """COLMAP's detector by database and further options. Its lens is set before photographs are matched."""
+    model = given.lens_model or "OPENCV"
+    return lambda file, *more: colmap.features(file, given.images, model, masks=masks_of(given, out),
+                                               more=[*words_of("features", given), *more])
+
+
+def look_at_features(given, features_file, command, out):
+    """Adds weak features where there are few, and says how many there are, and which are at rest."""
+    if not any("peak_threshold" in word for word in words_of("features", given)):
+        features.take_weak_features(features_file, lambda file, names, threshold: command(
+            file, *colmap.weak_features(names, threshold)), out)
+    for line in features.lines_about(features_file):
+        print(f"    {line}", flush=True)
+    still_features.look(features_file, out, out / "logs" / "features.log", is_masked=bool(given.masks))
+
+
+def prepare_matches(given, file, out):
+    """Leaves out blurred photographs, and sets the lens for COLMAP."""
+    if not given.keep_all:
+        features.leave_out_blurred(file)
+    start_lens.set_in(file, given, out)
+
+
 def colmap_steps(given, out):
-    features, database, models = out / "features.db", out / "database.db", out / "colmap"
-    start = lens.start_under_water(given.lens, given.lens_model)
-    folder = masks_of(given, out)
+    found, file, models = out / "features.db", out / "database.db", out / "colmap"
+    folder, command, more = masks_of(given, out), features_command(given, out), words_of("poses", given)
     if folder:
         yield Step("masks", masks.command(Programs(given.programs), given, folder), makes=folder,
                    reads=[given.masks, given.images], anew=[folder])
-    yield Step("features", colmap.features(features, given.images, given.lens_model, start,
-                                           masks=folder),
-               makes=features, reads=[given.images],
-               changed=[*colmap.database_files(features), out / still_features.FOUND],
-               after=lambda: still_features.look(features, out, out / "logs" / "features.log",
-                                                is_masked=bool(given.masks)))
-    yield matching.step(given, features, database)
-    yield Step("poses", colmap.mapper(database, given.images, models), makes=models / "best",
-               anew=[models], before=models.mkdir, after=lambda: take_largest(models))
+    yield Step("features", command(found), makes=found, reads=[given.images],
+               changed=[*colmap.database_files(found), out / still_features.FOUND],
+               after=lambda: look_at_features(given, found, command, out))
+    if not given.lens_model:
+        yield Step("lens", Programs(given.programs).effective_lens(given.lens, given.housing, out / start_lens.FILE),
+                   makes=out / start_lens.FILE, reads=[given.lens, given.housing])
+    yield matching.step(given, found, file, lambda: prepare_matches(given, file, out),
+                        reads=[given.lens] if given.lens_model else [out / start_lens.FILE])
+    refine = None if given.lens_model else False
+    yield Step("poses", colmap.mapper(file, given.images, models, refine, more=more), makes=models / "best",
+               anew=[models], before=models.mkdir, excuse=colmap.NO_MODEL,
+               after=lambda: poses.take_best(file, given, out, more))
 
 
 WITH_MASKS = ("densify", "refine-mesh", "texture")  # "map" gets those of "texture"

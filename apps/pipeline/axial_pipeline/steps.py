@@ -23,10 +23,11 @@ class Step:
     `changed`: paths that are removed only if an earlier step or an input changed, because otherwise
     the command continues with them. `before`, `after`: functions, called before the command and
     after its success. `writes`: what the record says that the step may write or remove, as in
-    ownership.WRITES."""
+    ownership.WRITES. `excuse`: a text by which the command says that it found nothing, after which
+    the step goes on."""
 
     def __init__(self, name, command, makes, reads=(), anew=(), changed=(), before=lambda: None,
-                 after=lambda: None, writes=()):
+                 after=lambda: None, writes=(), excuse=None):
         self.name = name
         self.command = [str(word) for word in command]
         self.makes = makes
@@ -36,6 +37,7 @@ class Step:
         self.before = before
         self.after = after
         self.writes = list(writes)
+        self.excuse = excuse
 
     def fingerprint(self):
         """Names, sizes and times of change of all files that the step reads."""
@@ -135,7 +137,7 @@ def perform(step, chain, records, logs, limits=()):
     begin = time.monotonic()
     logs.mkdir(exist_ok=True)
     step.before()
-    logged([*step.command, *limits], logs / f"{step.name}.log", step.name)
+    logged([*step.command, *limits], logs / f"{step.name}.log", step.name, step.excuse)
     step.after()
     seconds = round(time.monotonic() - begin, 1)
     records.write(step, "done", {"chain": digest(chain), "seconds": seconds, "ended": time.time(),

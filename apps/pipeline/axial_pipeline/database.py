@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""COLMAP's database: photographs, cameras, features and verified matches."""
+
+import array
+import contextlib
+import math
+import sqlite3
+import struct
+
+LENS_MODELS = {"SIMPLE_PINHOLE": 0, "PINHOLE": 1, "SIMPLE_RADIAL": 2, "RADIAL": 3, "OPENCV": 4, "OPENCV_FISHEYE": 5,
+               "FULL_OPENCV": 6, "FOV": 7, "SIMPLE_RADIAL_FISHEYE": 8, "RADIAL_FISHEYE": 9, "THIN_PRISM_FISHEYE": 10}
+PAIR = 2147483647  # pair_id = PAIR * smaller image id + larger image id
+CELLS = 4          # along each side of a photograph, for the spread of features
+
+
+@contextlib.contextmanager
+def opened(file):
+    """An open database, whose changes are kept if no error is raised."""
+    with contextlib.closing(sqlite3.connect(file)) as connection, connection:
+        yield connection
+
+
+def rows_of(file, query):
+    """The rows of a query; None if the file is no database of COLMAP."""
+    try:
+        with opened(file) as connection:
+            return connection.execute(query).fetchall()
+    except sqlite3.Error:
+        return None
+
+
+def names(file):
+    """The photographs by id; None if the file is no database of COLMAP."""
+    rows = rows_of(file, "SELECT image_id, name FROM images")
+    return None if rows is None else dict(rows)
+
+
+class Features:
+    """The features of a photograph: their number, the scale [px] below which a tenth of them lies, and the
+    share of the photograph's cells that hold any."""
+
+    def __init__(self, count, columns, data, size):
+        self.count = count
+        numbers = array.array("f")
+        numbers.frombytes(data or b"")
+        scales = sorted(map(self.scale, *(numbers[k::columns] for k in range(2, 6)))) if columns == 6 else []
+        self.fine = scales[len(scales) // 10] if scales else 0
+        width, height = size
+        cells = {(int(CELLS * x / width), int(CELLS * y / height))
+                 for x, y in zip(numbers[0::columns], numbers[1::columns])} if columns else set()
+        self.spread = len(cells) / CELLS ** 2
+
+    @staticmethod
+    def scale(a11, a12, a21, a22):
+        return math.sqrt(abs(a11 * a22 - a12 * a21))
+
+
+def features(file):
+    """The Features of all photographs, by name; None if the file is no database of COLMAP."""
+    rows = rows_of(file, "SELECT name, rows, cols, data, width, height FROM images "
+                   "JOIN cameras USING (camera_id) LEFT JOIN keypoints USING (image_id) ORDER BY name")
+    if rows is None:
+        return None
+    return {name: Features(count or 0, columns or 0, data, (width, height))
+            for name, count, columns, data, width, height in rows}
+
+
+def take_features(file, source, wanted):
+    """Replaces the features of the photographs `wanted` (names) by those in the database `source`."""
+    with opened(file) as connection, contextlib.closing(sqlite3.connect(source)) as other:
+        ids = dict(connection.execute("SELECT name, image_id FROM images"))
+        for name, image in other.execute("SELECT name, image_id FROM images").fetchall():
+            if name not in wanted or name not in ids:
+                continue
+            for table in ("keypoints", "descriptors"):
+                row = other.execute(f"SELECT rows, cols, data FROM {table} WHERE image_id = ?", (image,)).fetchone()
+                connection.execute(f"DELETE FROM {table} WHERE image_id = ?", (ids[name],))
+                if row:
+                    connection.execute(f"INSERT INTO {table} VALUES (?, ?, ?, ?)", (ids[name], *row))
+
+
+def leave_out(file, left_out):
+    """Removes photographs (names) with their features."""
+    with opened(file) as connection:
+        for name in left_out:
+            for table in ("keypoints", "descriptors"):
+                connection.execute(f"DELETE FROM {table} WHERE image_id IN "
+                                   "(SELECT image_id FROM images WHERE name = ?)", (name,))
+            connection.execute("DELETE FROM images WHERE name = ?", (name,))
+
+
+def set_lenses(file, lens_of):
+    """Gives cameras their lenses. `lens_of(id, width, height)` is a model's name and its parameters, or
+    None for a camera that stays as it is."""
+    with opened(file) as connection:
+        for camera, width, height in connection.execute("SELECT camera_id, width, height FROM cameras").fetchall():
+            lens = lens_of(camera, width, height)
+            if lens:
+                model, parameters = lens
+                connection.execute("UPDATE cameras SET model = ?, params = ?, prior_focal_length = 1 WHERE "
+                                   "camera_id = ?", (LENS_MODELS[model],
+                                                     struct.pack(f"<{len(parameters)}d", *parameters), camera))
+
+
+def verified_matches(file):
+    """The largest number of verified matches that each photograph has with another one, by name."""
+    named = names(file) or {}
+    most = dict.fromkeys(named.values(), 0)
+    for pair, count in rows_of(file, "SELECT pair_id, rows FROM two_view_geometries") or []:
+        for image in divmod(pair, PAIR):
+            if image in named:
+                most[named[image]] = max(most[named[image]], count)
+    return most

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which photographs COLMAP gave poses, and why others have none."""
+
+import json
+import struct
+
+from . import colmap, database, files
+from .photographs import few
+from .running import logged
+
+RECORD = "registered.json"
+FREE = "free_lens"          # folder of the models with a lens that COLMAP calibrated
+FOCAL = (0.7, 1.5)          # the focal length that COLMAP may find, in focal lengths of the start
+FEW_FEATURES, FEW_MATCHES = 300, 30
+PARAMETERS = {0: 3, 1: 4, 2: 4, 3: 5, 4: 8, 5: 8, 6: 12, 7: 5, 8: 4, 9: 5, 10: 12}  # by id of COLMAP's model
+
+
+def focal_lengths(model):
+    """The focal lengths of the cameras of a binary model, by id. Empty if the file is damaged."""
+    try:
+        data = (model / "cameras.bin").read_bytes()
+        count, at, found = struct.unpack_from("<Q", data)[0], 8, {}
+        for _ in range(count):
+            camera, kind, _, _ = struct.unpack_from("<iiQQ", data, at)
+            found[camera] = struct.unpack_from("<d", data, at + 24)[0]
+            at += 24 + 8 * PARAMETERS[kind]
+        return found
+    except (OSError, struct.error, LookupError):
+        return {}
+
+
+def starts(file):
+    """The focal lengths with which COLMAP started, by id of the camera."""
+    rows = database.rows_of(file, "SELECT camera_id, params FROM cameras WHERE params IS NOT NULL") or []
+    return {camera: struct.unpack_from("<d", params)[0] for camera, params in rows if len(params) >= 8}
+
+
+def has_sane_lens(model, file):
+    """Whether the focal lengths of a model are near those of the start in the database `file`. Says so if
+    they are not."""
+    begun = starts(file)
+    for camera, focal in focal_lengths(model).items():
+        if camera in begun and not FOCAL[0] * begun[camera] <= focal <= FOCAL[1] * begun[camera]:
+            print(f"    a model of {colmap.registered(model)} photographs is refused: its focal length ran from "
+                  f"{begun[camera]:.0f} to {focal:.0f} px", flush=True)
+            return False
+    return True
+
+
+def scale_names(given):
+    """The photographs that --scale-from images: may name."""
+    kind, _, words = given.scale_from.partition(":")
+    return set(words.replace('"', "").split(",")) if kind == "images" else set()
+
+
+class Candidates:
+    """The models of one or two runs of the mapper, the best first: with the most photographs, of two with
+    equally many the one that has the photographs of --scale-from."""
+
+    def __init__(self, folders, given):
+        wanted = scale_names(given)
+        found = [(colmap.registered(model), len(wanted & colmap.names_in(model)), -number, model)
+                 for number, folder in enumerate(folders) if folder.is_dir()
+                 for model in sorted(folder.iterdir()) if colmap.is_model(model)]
+        self.models = [(model, count) for count, _, _, model in
+                       sorted(found, key=lambda one: one[:3], reverse=True)]
+
+
+def try_free_lens(file, given, models, options, log):
+    """Runs the mapper again, with a lens that it calibrates itself. Models whose lens ran away are removed."""
+    free = models / FREE
+    free.mkdir()
+    logged(colmap.mapper(file, given.images, free, more=options), log, "poses", excuse=colmap.NO_MODEL)
+    for model in list(free.iterdir()):
+        if colmap.is_model(model) and not has_sane_lens(model, file):
+            files.clear(model)
+
+
+def take_best(file, given, out, options):
+    """Renames the best model to colmap/best in the folder `out`. If COLMAP's lens was fixed and photographs
+    have no pose, tries a free lens first. Writes and prints which photographs have no pose."""
+    names, models = database.names(file), out / "colmap"
+    photographs = sorted(names.values()) if names else []
+    first = Candidates([models], given).models
+    if not given.lens_model and (not first or first[0][1] < len(photographs)):
+        count = f"{first[0][1]} of {len(photographs)} photographs have" if first else "no photograph has"
+        print(f"    {count} poses with the lens behind the port; COLMAP tries to calibrate a lens", flush=True)
+        try_free_lens(file, given, models, options, out / "logs" / "poses-free.log")
+    found = Candidates([models, models / FREE], given).models
+    if not found:
+        raise colmap.no_poses(out / "logs" / "poses.log")
+    best, count = found[0]
+    left_out = reasons(file, colmap.names_in(best), [(model, n) for model, n in found[1:]
+                                                     if model.parent == best.parent])
+    print(f"    {count} of {len(photographs) or count} photographs have poses", flush=True)
+    others = [str(n) for model, n in found[1:] if model.parent == best.parent]
+    if others:
+        print(f"    COLMAP could not join all images: {len(others)} more models, of {', '.join(others)} images, "
+              f"remain in {best.parent}", flush=True)
+    best.rename(models / "best")
+    files.write(models / RECORD, json.dumps({"photographs": len(photographs) or count, "registered": count,
+                                             "left_out": left_out}))
+    for line in lines_about(out):
+        print(f"    {line}", flush=True)
+
+
+def reasons(file, registered, others):
+    """Why photographs have no pose, by name. `others`: further models and their numbers of photographs."""
+    if not registered:
+        return {}
+    found, matches = database.features(file) or {}, database.verified_matches(file)
+    why = {}
+    for name, one in found.items():
+        if name in registered:
+            continue
+        model = next((n for model, n in others if name in colmap.names_in(model)), 0)
+        why[name] = (f"in another model, of {model} photographs" if model
+                     else f"{one.count} features" if one.count < FEW_FEATURES
+                     else f"at most {matches[name]} matches with another photograph" if matches[name] < FEW_MATCHES
+                     else "too few matches with points that have a place")
+    return why
+
+
+def lines_about(out):
+    """Lines about the photographs without a pose, for the console and the report."""
+    record = files.read_object(out / "colmap" / RECORD)
+    by_reason = {}
+    for name, reason in record.get("left_out", {}).items():
+        by_reason.setdefault(reason, []).append(name)
+    if by_reason:
+        yield f"warning: {record['photographs'] - record['registered']} photographs have no pose"
+    for reason, names in by_reason.items():
+        yield f"no pose: {few(names)}: {reason}"

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Features and poses of COLMAP in `reconstruct`: databases written by hand, and stand-ins for COLMAP."""
+
+import argparse
+import contextlib
+import io
+import random
+import sqlite3
+import struct
+import unittest.mock
+
+from pipeline_folder import InFolder
+from programs import main
+
+from axial_pipeline import colmap, database, features, poses, start_lens
+from axial_pipeline.failure import Failure
+
+SHARP, BLURRED = 0.93, 3.4  # scales of the finest features [px]
+
+
+def keypoints(count, finest, seed=1):
+    """COLMAP's features: x, y and the affine shape, here a scale."""
+    draw = random.Random(seed)
+    rows = []
+    for _ in range(count):
+        scale = finest * draw.uniform(0.95, 3)
+        rows += [draw.uniform(0, 480), draw.uniform(0, 360), scale, 0, 0, scale]
+    return struct.pack(f"<{len(rows)}f", *rows)
+
+
+class Databases(InFolder):
+    def database(self, photographs, name="features.db"):
+        """`photographs`: the number of features and their finest scale, by name."""
+        file = self.folder / name
+        with contextlib.closing(sqlite3.connect(file)) as connection, connection:
+            connection.executescript(
+                "CREATE TABLE cameras (camera_id INTEGER PRIMARY KEY, model INTEGER, width INTEGER, height INTEGER,"
+                " params BLOB, prior_focal_length INTEGER);"
+                "CREATE TABLE images (image_id INTEGER PRIMARY KEY, name TEXT, camera_id INTEGER);"
+                "CREATE TABLE keypoints (image_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER, data BLOB);"
+                "CREATE TABLE descriptors (image_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER, data BLOB);"
+                "CREATE TABLE two_view_geometries (pair_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER,"
+                " data BLOB);")
+            connection.execute("INSERT INTO cameras VALUES (1, 4, 480, 360, ?, 0)",
+                               (struct.pack("<8d", 400, 400, 240, 180, 0, 0, 0, 0),))
+            for number, (photograph, (count, finest)) in enumerate(photographs.items(), 1):
+                connection.execute("INSERT INTO images VALUES (?, ?, 1)", (number, photograph))
+                connection.execute("INSERT INTO keypoints VALUES (?, ?, 6, ?)",
+                                   (number, count, keypoints(count, finest, number)))
+                connection.execute("INSERT INTO descriptors VALUES (?, ?, 128, ?)", (number, count, b"\0" * 128))
+        return file
+
+    def model(self, folder, names, focal=400):
+        """A binary model of COLMAP with images without observations."""
+        folder.mkdir(parents=True)
+        images = [struct.pack("<i7di", number, 1, 0, 0, 0, 0, 0, 0, 1) + name.encode() + b"\0" + struct.pack("<Q", 0)
+                  for number, name in enumerate(names, 1)]
+        (folder / "images.bin").write_bytes(struct.pack("<Q", len(images)) + b"".join(images))
+        (folder / "cameras.bin").write_bytes(struct.pack("<QiiQQ8d", 1, 1, 4, 480, 360, focal, focal, 240, 180,
+                                                         0, 0, 0, 0))
+        return folder
+
+    def said(self, function, *arguments):
+        with contextlib.redirect_stdout(io.StringIO()) as out:
+            function(*arguments)
+        return out.getvalue()
+
+
+class Features(Databases):
+    def test_number_scale_and_spread_are_those_of_the_file(self):
+        found = database.features(self.database({"a.jpg": (2000, SHARP), "b.jpg": (0, SHARP)}))
+        self.assertEqual([found[name].count for name in ("a.jpg", "b.jpg")], [2000, 0])
+        self.assertAlmostEqual(found["a.jpg"].fine, SHARP * (0.95 + 0.1 * 2.05), delta=0.05)
+        self.assertEqual((found["a.jpg"].spread, found["b.jpg"].spread), (1, 0))
+        self.assertIsNone(database.features(self.folder / "none.db"))
+
+    def test_blurred_photographs_are_found_and_left_out(self):
+        photographs = {f"{i}.jpg": (2000, SHARP) for i in range(7)} | {f"{i}.jpg": (1500, BLURRED) for i in (7, 8)}
+        file = self.database(photographs)
+        self.assertEqual(sorted(features.blurred(database.features(file))[0]), ["7.jpg", "8.jpg"])
+        self.assertIn("blurred", "\n".join(features.lines_about(file)))
+        self.assertIn("7.jpg, 8.jpg", self.said(features.leave_out_blurred, file))
+        self.assertEqual(sorted(database.names(file).values()), [f"{i}.jpg" for i in range(7)])
+        self.assertEqual(self.said(features.leave_out_blurred, file), "")
+
+    def test_a_dive_without_sharp_photographs_is_kept(self):
+        file = self.database({f"{i}.jpg": (900, BLURRED + 0.1 * i) for i in range(6)})
+        self.assertEqual(features.blurred(database.features(file))[0], {})
+
+    def test_weak_features_are_added_where_there_are_few(self):
+        file = self.database({"clear.jpg": (3000, SHARP), "hazy.jpg": (20, SHARP)})
+        low = self.folder / "low.db"
+        (self.folder / "logs").mkdir()
+
+        def detector(to, names, threshold):
+            self.assertEqual((names.read_text(), threshold), ("hazy.jpg\n", features.WEAK))
+            self.database({"hazy.jpg": (2500, SHARP)}, low.name)
+            return ["mv", str(low), str(to)]
+
+        said = self.said(features.take_weak_features, file, detector, self.folder)
+        self.assertIn("1 of 2 photographs have few features", said)
+        self.assertEqual({name: one.count for name, one in database.features(file).items()},
+                         {"clear.jpg": 3000, "hazy.jpg": 2500})
+        self.assertEqual(list(self.folder.glob("weak_features*")), [])
+
+    def test_nothing_is_added_to_many_features(self):
+        file = self.database({"clear.jpg": (3000, SHARP)})
+        self.assertEqual(self.said(features.take_weak_features, file, None, self.folder), "")
+
+
+class Lens(Databases):
+    def test_the_lens_behind_the_port_is_that_of_the_cameras(self):
+        file = self.database({"a.jpg": (9, SHARP)})
+        lenses = {1: (480, 360, "OPENCV_FISHEYE", [380, 381, 240, 180, 0.1, 0.2, 0.3, 0.4])}
+        database.set_lenses(file, lambda *camera: start_lens.lens_for(lenses, *camera))
+        rows = database.rows_of(file, "SELECT model, params, prior_focal_length FROM cameras")
+        self.assertEqual(rows, [(5, struct.pack("<8d", 380, 381, 240, 180, 0.1, 0.2, 0.3, 0.4), 1)])
+
+    def test_a_camera_of_another_size_keeps_its_lens(self):
+        lenses = {1: (640, 480, "OPENCV", [1] * 8)}
+        self.assertIsNone(start_lens.lens_for(lenses, 1, 480, 360))
+        two = {1: (480, 360, "OPENCV", [1] * 8), 2: (480, 360, "OPENCV", [2] * 8)}
+        self.assertEqual(start_lens.lens_for(two, 2, 480, 360), ("OPENCV", [2] * 8))
+        self.assertIsNone(start_lens.lens_for(two, 3, 480, 360))
+
+
+class Poses(Databases):
+    NAMES = ("a.jpg", "b.jpg", "c.jpg", "d.jpg")
+
+    def given(self, **changes):
+        return argparse.Namespace(**{"scale_from": "", "lens_model": "", "images": "images", **changes})
+
+    def best(self, given, free=None):
+        """Takes the best model. `free`: makes the models of the second try in a folder."""
+        (self.folder / "logs").mkdir(exist_ok=True)
+        file = self.folder / "features.db"
+        if not file.exists():
+            self.database({name: (2000 if name != "d.jpg" else 12, SHARP) for name in self.NAMES})
+        with unittest.mock.patch.object(poses, "logged", lambda *_, **__: free and free(
+                self.folder / "colmap" / poses.FREE)):
+            return self.said(poses.take_best, file, given, self.folder, [])
+
+    def test_all_photographs_need_no_second_try(self):
+        self.model(self.folder / "colmap" / "0", self.NAMES)
+        said = self.best(self.given(), lambda folder: self.fail("tried again"))
+        self.assertEqual(said, "    4 of 4 photographs have poses\n")
+        self.assertEqual(list(poses.lines_about(self.folder)), [])
+
+    def test_the_try_with_more_photographs_is_kept(self):
+        self.model(self.folder / "colmap" / "0", self.NAMES[:2])
+        said = self.best(self.given(), lambda folder: self.model(folder / "0", self.NAMES[:3], 500))
+        self.assertIn("3 of 4 photographs have poses", said)
+        self.assertIn("d.jpg: 12 features", said)
+        self.assertEqual(colmap.names_in(self.folder / "colmap" / "best"), set(self.NAMES[:3]))
+
+    def test_a_lens_that_ran_away_is_refused(self):
+        self.model(self.folder / "colmap" / "0", self.NAMES[:2])
+        said = self.best(self.given(), lambda folder: self.model(folder / "0", self.NAMES, 23))
+        self.assertIn("its focal length ran from 400 to 23 px", said)
+        self.assertIn("2 of 4 photographs have poses", said)
+
+    def test_of_equal_models_the_fixed_lens_counts(self):
+        self.model(self.folder / "colmap" / "0", self.NAMES[:2])
+        self.best(self.given(), lambda folder: self.model(folder / "0", self.NAMES[2:]))
+        self.assertEqual(colmap.names_in(self.folder / "colmap" / "best"), {"a.jpg", "b.jpg"})
+
+    def test_of_equal_places_the_one_with_the_known_length_counts(self):
+        for number, names in enumerate((self.NAMES[:2], self.NAMES[2:])):
+            self.model(self.folder / "colmap" / str(number), names)
+        said = self.best(self.given(lens_model="OPENCV", scale_from="images:c.jpg,d.jpg,0.5"))
+        self.assertEqual(colmap.names_in(self.folder / "colmap" / "best"), {"c.jpg", "d.jpg"})
+        self.assertIn("could not join all images: 1 more models, of 2 images", said)
+        self.assertIn("a.jpg, b.jpg: in another model, of 2 photographs", said)
+
+    def test_no_model_is_a_failure_that_names_the_log(self):
+        (self.folder / "colmap").mkdir()
+        with self.assertRaisesRegex(Failure, "COLMAP found no poses: see .*poses.log"):
+            self.best(self.given())
+
+    def test_a_damaged_model_has_no_names(self):
+        model = self.model(self.folder / "colmap" / "0", self.NAMES)
+        (model / "images.bin").write_bytes((model / "images.bin").read_bytes()[:-30])
+        self.assertEqual(colmap.names_in(model), set())
+
+
+if __name__ == "__main__":
+    main()
