@@ -11,6 +11,7 @@ import math
 import pathlib
 import random
 import re
+import struct
 import sys
 import typing
 
@@ -100,6 +101,32 @@ def pictures(change, value, which):
     return change_some
 
 
+def with_focal_length(jpeg, millimetres):
+    """A JPEG file with this focal length in its Exif data."""
+    first = struct.pack("<HHHIII", 1, 0x8769, 4, 1, 26, 0)
+    table = struct.pack("<HHHIII", 1, 0x920A, 5, 1, 44, 0) + struct.pack("<II", round(10 * millimetres), 10)
+    body = b"Exif\0\0II*\0\x08\0\0\0" + first + table
+    return jpeg[:2] + b"\xff\xe1" + struct.pack(">H", len(body) + 2) + body + jpeg[2:]
+
+
+WIDE, ZOOMED = 80, 60       # fields of view [degrees]
+MILLIMETRES = 18            # the focal length for the wide one
+
+
+def zoom_in_half(brought, folder, data):
+    """Half of the photographs are from the same dive at another focal length, which the Exif data state."""
+    seed = int(data.name.split("-")[2])
+    zoomed = dive(data.parents[1], "reef", seed, "--fov-degrees", ZOOMED)
+    ratio = math.tan(math.radians(WIDE / 2)) / math.tan(math.radians(ZOOMED / 2))
+    images = folder / "images"
+    images.mkdir(exist_ok=True)
+    for number, photograph in enumerate(sorted(brought.images.iterdir())):
+        source = zoomed / "water" / photograph.name if number % 2 else photograph
+        (images / photograph.name).write_bytes(with_focal_length(
+            source.read_bytes(), MILLIMETRES * (ratio if number % 2 else 1)))
+    brought.images = images
+
+
 def another_housing(content):
     def change(brought, folder, data):
         brought.housing.write_text(content)
@@ -139,6 +166,7 @@ ROWS = [
     Row("sand", reef(preset="sand"), nothing, TOLERATED_PICTURES),
     Row("two-sizes", reef(), pictures("size", 0.75, range(5))),
     Row("turned", reef(), pictures("turn", 1, (2, 5, 7))),
+    Row("zoom", reef(), zoom_in_half, says="mm instead of"),
     Row("blurred", reef(), pictures("blur", 3.5, (1, 4, 8)), TOLERATED_PICTURES, says="blur", lost=3),
     Row("no-housing", reef("--port-distance", 0.05), kind("flat"), factor=1.3),
     Row("dome-for-flat", reef(), another_housing(DOME), says="flat"),

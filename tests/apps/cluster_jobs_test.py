@@ -56,7 +56,8 @@ class Jobs(InFolder):
                  "scale_from": "", "refine": "", "matcher": "exhaustive", "vocabulary": "",
                  "lens_model": "OPENCV",
                  "refine_poses": "", "densify": "", "mesh": "", "refine_mesh": "", "texture": "",
-                 "features": "", "matches": "", "poses": "", "keep_all": False, "map": "", "compare": "", "page": "",
+                 "features": "", "matches": "", "poses": "", "keep_all": False, "cameras": [],
+                 "map": "", "compare": "", "page": "",
                  "tiles": 1, "until": "cloud", "without": "",
                  "earlier": "", "truth": "", "programs": "bin", "masks": "", "ignore_mask_label": "", **more}
         with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):

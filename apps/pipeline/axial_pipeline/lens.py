@@ -18,6 +18,13 @@ def has_one_focal_length(model):
     return model.startswith(("SIMPLE_", "RADIAL"))
 
 
+def sized_lens(file):
+    """The model's name, (width, height) [px] and the parameters of the only camera of COLMAP's cameras.txt."""
+    lines = [line.split() for line in file.read_text(encoding="utf-8-sig").splitlines()]
+    (_, model, width, height, *numbers), = [words for words in lines if words and not words[0].startswith("#")]
+    return model, (int(width), int(height)), [float(number) for number in numbers]
+
+
 def lens_in_air(file):
     """The camera model's name and its parameters: of the first camera of COLMAP's cameras.txt, or
     of Calibmar's calibration.yaml."""

@@ -26,7 +26,7 @@ CHANGES = ("difference.tif", "sigma.tif", "significant.tif", "json", "jpg")
 WRITES = {
     "masks": ["colmap_masks"],
     "features": ["features.db", "features.db-*", "still_features.json", "still_features.png",
-                 "weak_features.*"],
+                 "weak_features.*", "cameras"],
     "lens": ["start_lens.txt"],
     "matches": ["database.db", "database.db-*", "database.db.tmp"],
     "poses": ["colmap"],

@@ -191,9 +191,10 @@ def say(folder, found):
         print(f"{folder}: {line}", flush=True)
 
 
-def check(folder):
+def check(folder, one_size=True):
     """Fails if COLMAP cannot work with the photographs of a folder, or would use another file for a
-    photograph. Prints what COLMAP does with unusual files. Returns the names of the photographs."""
+    photograph. Prints what COLMAP does with unusual files. Returns the photographs, Image by name.
+    `one_size`: whether several sizes are refused."""
     folder = pathlib.Path(folder)
     if not folder.is_dir():
         raise Failure(f"--images {folder}: is not a folder")
@@ -204,6 +205,7 @@ def check(folder):
         raise Failure(f"--images {folder}: has {'one photograph, ' + only if only else 'no photographs'}"
                       f"{no}; at least {LEAST} are needed")
     refuse_masks(folder, found.images)
-    refuse_other_sizes(folder, found.images)
+    if one_size:
+        refuse_other_sizes(folder, found.images)
     say(folder, found)
-    return list(found.images)
+    return found.images

@@ -6,7 +6,7 @@ import fnmatch
 import os
 import pathlib
 
-from . import cluster, colmap, database, files, masks, matching, photographs, positions
+from . import cameras, cluster, colmap, database, files, masks, matching, photographs, positions
 from .failure import Failure
 from .option_files import find_option, has_option
 from .ownership import ORDER, WRITES, is_record
@@ -249,7 +249,9 @@ def check(given):
     if given.snakemake and not given.cluster:
         raise Failure(f"--snakemake {given.snakemake}: is only for --cluster")
     colmap.check_installed()
-    photographs.check(given.images)
+    given.cameras = cameras.of(given, photographs.check(given.images, one_size=False))
+    for line in cameras.lines_about(given.cameras):
+        print(f"{given.images}: {line}", flush=True)
     matching.check(given)
     given.output = str(files.resolved("--output", given.output))
     if given.earlier and is_own_mesh(pathlib.Path(given.earlier), pathlib.Path(given.output)):

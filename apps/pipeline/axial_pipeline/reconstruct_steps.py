@@ -3,10 +3,11 @@
 
 import pathlib
 
-from . import colmap, features, masks, matching, poses, positions, start_lens, still_features
+from . import cameras, colmap, features, masks, matching, poses, positions, start_lens, still_features
 from .option_files import find_option, has_option, read_by
 from .ownership import WRITES
 from .programs import Programs, words_of
+from .running import logged
 from .reconstruct_options import wanted_steps
 from .run_file import write_run
 from .steps import Files, Report, Step, Tiles
@@ -24,14 +25,28 @@ def features_command(given, out):
                                                more=[*words_of("features", given), *more])
 
 
+def features_of_camera(number, command, file, out):
+    """COLMAP's detector for the photographs of one of several cameras."""
+    return command(file, "--image_list_path", cameras.list_of(out, number))
+
+
 def look_at_features(given, features_file, command, out):
-    """Adds weak features where there are few, and says how many there are, and which are at rest."""
+    """Finds the features of further cameras, adds weak features where there are few, and says how many there
+    are, and which are at rest."""
+    for number in range(2, len(given.cameras) + 1):
+        logged(features_of_camera(number, command, features_file, out), out / "logs" / f"features-{number}.log",
+               "features")
     if not any("peak_threshold" in word for word in words_of("features", given)):
         features.take_weak_features(features_file, lambda file, names, threshold: command(
             file, *colmap.weak_features(names, threshold)), out)
     for line in features.lines_about(features_file):
         print(f"    {line}", flush=True)
     still_features.look(features_file, out, out / "logs" / "features.log", is_masked=bool(given.masks))
+
+
+def write_cameras(given, out):
+    if given.cameras:
+        cameras.write(given, given.cameras, out)
 
 
 def prepare_matches(given, file, out):
@@ -47,11 +62,13 @@ def colmap_steps(given, out):
     if folder:
         yield Step("masks", masks.command(Programs(given.programs), given, folder), makes=folder,
                    reads=[given.masks, given.images], anew=[folder])
-    yield Step("features", command(found), makes=found, reads=[given.images],
+    yield Step("features", features_of_camera(1, command, found, out) if given.cameras else command(found),
+               makes=found, reads=[given.images], before=lambda: write_cameras(given, out),
                changed=[*colmap.database_files(found), out / still_features.FOUND],
                after=lambda: look_at_features(given, found, command, out))
     if not given.lens_model:
-        yield Step("lens", Programs(given.programs).effective_lens(given.lens, given.housing, out / start_lens.FILE),
+        yield Step("lens", Programs(given.programs).effective_lens(
+            cameras.lens_file(given, out), cameras.housing_file(given, out), out / start_lens.FILE),
                    makes=out / start_lens.FILE, reads=[given.lens, given.housing])
     yield matching.step(given, found, file, lambda: prepare_matches(given, file, out),
                         reads=[given.lens] if given.lens_model else [out / start_lens.FILE])
@@ -226,7 +243,8 @@ def steps_without_names_of_files(given, out):
     refined, scene, cloud = out / "refined", out / "scene.mvs", out / "scene_dense.ply"
     known_positions = positions.file_of(given.scale_from)
     yield from colmap_steps(given, out)
-    command = programs.refine_poses(out / "colmap" / "best", given.lens, given.housing, refined,
+    command = programs.refine_poses(out / "colmap" / "best", cameras.lens_file(given, out),
+                                    cameras.housing_file(given, out), refined,
                                     *refine_options(given))
     yield Step("refine", command, makes=Report(refined / "report.json"),
                reads=[given.lens, given.housing, *([known_positions] if known_positions else []),
