@@ -23,9 +23,11 @@
 #include "pose/colmap_bundle.h"
 #include "pose/freed_check.h"
 #include "pose/known.h"
+#include "pose/port_kind.h"
 #include "report.h"
 #include "results.h"
 #include "scale_from.h"
+#include "usual_housing.h"
 
 namespace axial::apps {
 namespace {
@@ -68,6 +70,8 @@ io::Housing carried_housing(const io::ColmapModel& model, const LensesInAir& len
 // differ.
 io::Housing load_housing(const Options& options, const io::ColmapModel& model,
                          const LensesInAir& lenses) {
+  if (!options.usual_housing.empty())
+    return usual_housing(kind_named(options.usual_housing).value_or(pose::PortKind::flat));
   io::Housing carried = carried_housing(model, lenses);
   const std::string of_model = "the model in " + options.model.string();
   const std::string of_lens = options.lens.empty() ? of_model : options.lens.string();
@@ -256,6 +260,7 @@ void write(const Options& options, const pose::ColmapBundle& refined, const io::
         return pose::uncertainty(refined.bundle, results.options, log_if_long);
       });
   for (const std::string& line : uncertainty_lines(results, known)) log_info("{}", line);
+  if (results.is_other_kind) return;  // numbers of the wrong kind are no cause
   if (const auto freed = pose::number_that_does_not_fit(refined.bundle, results.options))
     log_warning("{}", pose::warning_of(*freed,
                                        results.scale_lost ? std::numeric_limits<double>::infinity()
@@ -323,6 +328,34 @@ Refined refine_or_without_scale(Options& options, pose::ColmapBundle& refined, c
   return refine(options, refined);
 }
 
+std::string text_of(const pose::KindFit& better, const pose::KindFit& stated) {
+  const std::string kind = better.kind == pose::PortKind::none
+                               ? "no port, or a dome around the camera centre,"
+                               : std::string(pose::words_for(better.kind));
+  // The numbers of a wrong kind may hide the errors.
+  const std::string numbers =
+      stated.strain > 3
+          ? fmt::format(" after a stated number changed by {:.0f} standard deviations",
+                        stated.strain)
+          : std::string();
+  return fmt::format(
+      "The photographs fit {} better than {}: errors are {:.3g} px instead of {:.3g} px{}", kind,
+      pose::words_for(stated.kind), better.error, stated.error, numbers);
+}
+
+// Warns if the photographs fit another kind of port than the stated kind. Returns whether they do.
+// `before`: the bundle before refining, in metres.
+bool warn_of_other_kind(const Options& options, const pose::Bundle& before) {
+  const pose::AdjustOptions& adjust = options.refine.adjust;
+  if (!options.usual_housing.empty() || adjust.poses_known) return false;
+  const std::vector<pose::KindFit> fits = pose::fits_of_kinds(before, adjust);
+  const std::optional<pose::KindFit> better = pose::better_kind(fits);
+  if (!better) return false;
+  log_warning("{}; state the right kind of housing, or let --housing unknown find it",
+              text_of(*better, fits.front()));
+  return true;
+}
+
 // Tells the errors, checks the result, and writes it. `frame`: of the refined bundle.
 void finish(const Options& options, const Input& input, const pose::ColmapBundle& refined,
             const Refined& done, const UnusedInput& unused, const LocalFrame& frame) {
@@ -341,15 +374,29 @@ void finish(const Options& options, const Input& input, const pose::ColmapBundle
   for (const std::string& line : options.dropped_positions)
     results.unused.push_back("--scale-from: " + line);
   warn(done.report, refined.bundle, options.refine, results.unused);
+  results.is_other_kind = warn_of_other_kind(options, done.before);
   write(options, refined, input.model, frame, result, results);
+}
+
+// The kind of port that the photographs fit best, for --housing unknown. `bundle` has usual flat
+// ports.
+pose::PortKind likely_kind(pose::Bundle bundle, const pose::AdjustOptions& adjust) {
+  pose::bring_to_metres(bundle, adjust);
+  const std::vector<pose::KindFit> fits = pose::fits_of_kinds(bundle, adjust);
+  const auto better = pose::better_kind(fits);
+  for (const pose::KindFit& fit : fits)
+    log_info("With {}, errors are {:.3g} px", pose::words_for(fit.kind), fit.error);
+  // Without a port, cameras are those behind a dome around the camera centre.
+  const pose::PortKind kind = better ? pose::PortKind::dome : pose::PortKind::flat;
+  log_info("The housing is taken for {}", pose::words_for(kind));
+  return kind;
 }
 
 int run_effective_lens(const Options& options) {
   const std::vector<fs::path> inputs{options.lens, options.housing};
   require_not_an_input(options.effective_lens, inputs, "--effective-lens");
-  const io::Housing housing = io::read_housing(options.housing);
-  io::refuse_water_surfaces(housing, options.housing);
-  write_effective_lenses(options.effective_lens, load_lenses(options, {}), housing,
+  const LensesInAir lenses = load_lenses(options, {});
+  write_effective_lenses(options.effective_lens, lenses, load_housing(options, {}, lenses),
                          options.scene_distance, options.lens);
   return 0;
 }
@@ -359,11 +406,17 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   const ThreadLimit threads(options.parsed.common.max_threads);
   if (!options.effective_lens.empty()) return run_effective_lens(options);
-  const Input input = read_input(options);
+  Input input = read_input(options);
   pose::ColmapBundle refined = load(options, input.model, input.lenses, input.housing);
   check_ports(options, input, refined.bundle);
   UnusedInput unused(options.allow_missing);
   LocalFrame frame = set_known(options, refined.bundle, input.frame, unused);
+  if (options.usual_housing == "unknown" &&
+      likely_kind(refined.bundle, options.refine.adjust) == pose::PortKind::dome) {
+    input.housing = usual_housing(pose::PortKind::dome);
+    refined = load(options, input.model, input.lenses, input.housing);
+    frame = set_known(options, refined.bundle, input.frame, unused);
+  }
   check_output(options, input.folder);
   say_input(input, refined);
   const Refined done = refine_or_without_scale(options, refined, input, unused, frame);

@@ -8,6 +8,7 @@
 #include "base/setting_names.h"
 #include "base/unused_input.h"
 #include "base/version.h"
+#include "usual_housing.h"
 
 namespace axial::apps {
 namespace {
@@ -24,7 +25,8 @@ void check_effective_lens(const Options& options) {
     if (given(options.parsed, other))
       fail("--effective-lens {}: contradicts --{}", options.effective_lens.string(), other);
   if (options.lens.empty()) fail("--lens is missing: the lens calibrated in air");
-  if (options.housing.empty()) fail("--housing is missing: the port of the camera");
+  if (options.housing.empty() && options.usual_housing.empty())
+    fail("--housing is missing: the port of the camera");
 }
 
 void check(const Options& options) {
@@ -60,7 +62,9 @@ void declare_files(OptionList& visible, Texts& texts, Options& options) {
            "of COLMAP-Underwater contains it")
       .add("housing", &texts.housing,
            "housing file with the ports of the cameras; a model of COLMAP-Underwater and "
-           "Calibmar's file contain them")
+           "Calibmar's file contain them; flat, dome or unknown: usual numbers, which the "
+           "photographs "
+           "correct")
       .add("output-folder,o", &texts.output,
            "folder for sparse/ (COLMAP text, lens in air), housing.json and report.json")
       .add("effective-lens", &texts.effective_lens,
@@ -134,7 +138,10 @@ Options parse_command_line(int argc, const char* const* argv) {
   const CommonOptions& common = options.parsed.common;
   options.model = in_working_folder(common, texts.input);
   options.lens = in_working_folder(common, texts.lens);
-  options.housing = in_working_folder(common, texts.housing);
+  if (is_usual_housing(texts.housing))
+    options.usual_housing = texts.housing;
+  else
+    options.housing = in_working_folder(common, texts.housing);
   options.output = folder_in_working_folder(common, texts.output, "--output-folder");
   options.effective_lens =
       texts.effective_lens.empty()

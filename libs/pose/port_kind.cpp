@@ -17,8 +17,8 @@ namespace {
 constexpr SampleLimits kLimits{600, 40, 40, 1};
 constexpr std::size_t kFewestImages = 3, kFewestPoints = 20;
 constexpr double kBetter = 0.95;       // times the error
-constexpr double kLeastGain = 50;      // of the cost, in squared standard deviations
-constexpr double kStrained = 5;        // standard deviations of a number
+constexpr double kLeastGain = 36;      // of the cost, in squared standard deviations
+constexpr double kStrained = 4;        // standard deviations of a number
 constexpr double kAlike = 0.98;        // times the error
 constexpr double kFinestNoise = 0.05;  // [px]
 constexpr double kGlass = 0.008;       // [m]
@@ -79,12 +79,13 @@ void fit(KindTrial& trial) {
 
 KindTrial first_fit(PortKind kind, const Bundle& part, bool is_stated,
                     const AdjustOptions& options) {
-  constexpr double kMeasured = 0.005, kGuessed = 0.03;  // [m]
+  constexpr double kMeasured = 0.005;                           // [m]
+  const double guessed = kind == PortKind::dome ? 0.01 : 0.03;  // [m]
   KindTrial trial{kind, part, {}, 0};
   if (!is_stated)
     for (BundleCamera& camera : trial.bundle.cameras) camera.measured.port = usual_port(kind);
   triangulate(trial.bundle);
-  static_cast<Unknowns&>(trial.options) = unknowns_of(kind, is_stated ? kMeasured : kGuessed);
+  static_cast<Unknowns&>(trial.options) = unknowns_of(kind, is_stated ? kMeasured : guessed);
   if (!options.distances.empty() || !options.positions.empty())
     trial.options.distances = held_length(part);
   trial.options.max_iterations = 40;
@@ -94,7 +95,11 @@ KindTrial first_fit(PortKind kind, const Bundle& part, bool is_stated,
 
 std::vector<KindTrial> trials_of(const Bundle& part, PortKind stated,
                                  const AdjustOptions& options) {
-  std::vector<KindTrial> trials{first_fit(stated, part, true, options)};
+  // With usual numbers, the stated kind fits even if its stated numbers are far off.
+  KindTrial as_stated = first_fit(stated, part, true, options);
+  KindTrial as_usual = first_fit(stated, part, false, options);
+  std::vector<KindTrial> trials;
+  trials.push_back(std::move(as_usual.cost < as_stated.cost ? as_usual : as_stated));
   for (const PortKind kind : {PortKind::none, PortKind::flat, PortKind::dome})
     if (kind != stated) trials.push_back(first_fit(kind, part, false, options));
   return trials;

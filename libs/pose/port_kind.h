@@ -37,22 +37,22 @@ struct KindFit {
 };
 
 // Fits each kind of port to a part of the bundle: at most 40 images and 600 points. The cameras
-// keep their stated ports for their own kind, and have usual_port() for another kind. Poses, points
-// and all numbers of port and lens but the thickness are adjusted. The numbers keep near their
-// starts (standard deviations): normal 3 degrees, index of the water 0.004, focal length 0.5 %;
-// distance and centre 5 mm for the stated port and 3 cm for usual ports. The result has the kind
-// that is stated first, and then the other kinds by increasing error. Of `options`, only the known
-// lengths and positions are used, and of these only whether there are any: the length between two
-// far images of the bundle then stays nearly constant.
+// have usual_port(). For the kind that is stated, their stated ports are tried, too, and the better
+// fit counts. Poses, points and all numbers of port and lens but the thickness are adjusted. The
+// numbers keep near their starts (standard deviations): normal 3 degrees, index of the water 0.004,
+// focal length 0.5 %; distance and centre 5 mm for stated ports; distance 3 cm and centre 1 cm for
+// usual ports. The result has the kind that is stated first, and then the other kinds by increasing
+// error. Of `options`, only the known lengths and positions are used, and of these only whether
+// there are any: the length between two far images of the bundle then stays nearly constant.
 //
 // Precondition: the bundle is in metres (bring_to_metres() in refine.h). Empty if the part has
 // fewer than 3 images or 20 points, if cameras have ports of several kinds, or if the adjustment
 // fails for the kind that is stated. Other kinds for which it fails are left out.
 std::vector<KindFit> fits_of_kinds(const Bundle& bundle, const AdjustOptions& options);
 
-// The kind that fits clearly better than the first of `fits`, by seven standard deviations or more.
+// The kind that fits clearly better than the first of `fits`, by six standard deviations or more.
 // In addition, its error is at least 5 % smaller, or the stated port fits only with a number that
-// changed by more than five standard deviations: a dome whose centre moves far behind the camera
+// changed by more than four standard deviations: a dome whose centre moves far behind the camera
 // looks like a flat port. Nothing if there is no such kind. Of two kinds that fit better, and whose
 // errors differ by less than 2 %, the one without a port counts: a dome around the camera centre
 // gives the photographs of no port.

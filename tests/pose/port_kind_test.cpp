@@ -64,6 +64,15 @@ TEST(PortKind, OfARulerIsRight) {
   }
 }
 
+// An index of the wrong medium is no other kind, although a dome can look like this flat port.
+TEST(PortKind, OfAWrongIndexIsRight) {
+  for (const double n_water : {1.0, 1.5}) {
+    refractive::FlatPort<double> wrong = flat_port(2);
+    wrong.n_water = n_water;
+    EXPECT_FALSE(better(brought_up(flat_port(2), wrong, 0.8))) << n_water;
+  }
+}
+
 TEST(PortKind, FlatIsFoundWhereADomeIsStated) {
   for (const double distance : {0.8, 2.5}) {
     const auto found = better(brought_up(flat_port(), dome_port(), distance));

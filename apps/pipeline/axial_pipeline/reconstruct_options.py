@@ -21,6 +21,7 @@ MORE_OPTIONS = {"features": "COLMAP's feature_extractor", "matches": "COLMAP's m
                 "map": "MapSurface", "compare": "CompareSurveys", "page": "ViewScene"}
 RESULTS = ("poses", "cloud", "mesh", "texture", "map", "page")
 SKIPPED = ("refine-mesh", "texture", "map", "page")  # steps that may be left out
+KINDS = ("flat", "dome", "unknown")  # values of --housing instead of a file
 MOST_TILES = 1000  # as in the programs
 
 
@@ -32,7 +33,7 @@ def options(script_folder, description):
                         help="the lens as calibrated in air: a COLMAP cameras.txt, or Calibmar's "
                         "calibration.yaml")
     parser.add_argument("--housing", required=True, help="the port (docs/formats.md), or Calibmar's "
-                        "calibration.yaml")
+                        "calibration.yaml; or flat, dome or unknown: usual numbers, which the photographs correct")
     parser.add_argument("-o", "--output", required=True, help="folder for all output files")
     parser.add_argument("--scale-from", default="",
                         help="known lengths or positions [m], as for RefinePoses")
@@ -217,6 +218,8 @@ def check_paths(given):
         photographs.require_utf8(f"--{name.replace('_', '-')}", value)
     for name in ("images", "lens", "housing", "truth", "earlier", "programs"):
         path = getattr(given, name)
+        if name == "housing" and path in KINDS:
+            continue
         if path and not pathlib.Path(path).exists():
             raise Failure(f"--{name} {path}: not found")
         if path:
