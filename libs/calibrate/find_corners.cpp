@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <limits>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "calibrate/board.h"
 #include "calibrate/marker_board.h"
+#include "calibrate/refine_corners.h"
 
 namespace axial::calibrate {
 namespace {
@@ -24,20 +24,24 @@ double least_spacing(const std::vector<cv::Point2f>& corners, cv::Size size) {
   return least;
 }
 
-// Moves each corner to the intersection of the edges around it.
-void refine(const cv::Mat1b& photograph, cv::Size size, std::vector<cv::Point2f>& corners) {
-  // The window must not reach another corner: a third of the least spacing to each side.
-  const int half = std::clamp(static_cast<int>(least_spacing(corners, size) / 3), 2, 11);
-  cv::cornerSubPix(photograph, corners, {half, half}, {-1, -1},
-                   {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 50, 1e-3});
-}
-
 // OpenCV's older detector finds boards that have hardly any margin.
 bool find_at_the_margin(const cv::Mat1b& photograph, cv::Size size,
                         std::vector<cv::Point2f>& corners) {
   constexpr int kFlags =
       cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
   return cv::findChessboardCorners(photograph, size, corners, kFlags);
+}
+
+// True if OpenCV's detectors guessed corners that are hidden. Corners at the border of the
+// photograph are not examined.
+bool guessed(const cv::Mat1b& photograph, int half, const std::vector<Corner>& corners) {
+  constexpr double kHidden = 0.3;  // far above the asymmetry of a visible corner
+  std::vector<double> asymmetries;
+  for (const Corner& corner : corners)
+    if (holds_window(photograph, half, corner.pixel))
+      asymmetries.push_back(asymmetry(photograph, half, corner.pixel));
+  return !asymmetries.empty() &&
+         *std::ranges::max_element(asymmetries) > hidden_above(asymmetries, kHidden);
 }
 
 }  // namespace
@@ -51,10 +55,12 @@ std::vector<Corner> find_corners(const cv::Mat1b& photograph, const Board& board
   if (!cv::findChessboardCornersSB(photograph, size, corners, kFlags) &&
       !find_at_the_margin(photograph, size, corners))
     return {};
-  refine(photograph, size, corners);
+  const int half = window_for(least_spacing(corners, size));
+  move_to_edges(photograph, half, corners);
   std::vector<Corner> found;
   found.reserve(corners.size());
   for (const cv::Point2f& p : corners) found.push_back({found.size(), {p.x, p.y}});
+  if (guessed(photograph, half, found)) return {};
   return found;
 }
 

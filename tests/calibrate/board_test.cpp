@@ -29,6 +29,11 @@ TEST(Board, IsReadFromItsDescription) {
   const auto tags = corners_of(parse_board("apriltags:3x2:0.04:0.01"));
   ASSERT_EQ(tags.size(), 24u);
   EXPECT_LT((tags[4 * 4 + 2] - Eigen::Vector3d(0.09, 0.09, 0)).norm(), 1e-15);
+  EXPECT_FALSE(has_two_pitches(checkers));
+  EXPECT_FALSE(has_two_pitches(parse_board("checkerboard:9x6:0.03,0.03")));
+  const Board uneven = parse_board("checkerboard:8x7:0.0338,0.0335");
+  EXPECT_TRUE(has_two_pitches(uneven));
+  EXPECT_EQ(corners_of(uneven)[9], Eigen::Vector3d(0.0338, 0.0335, 0));
   EXPECT_EQ(parse_board("charuco:8x6:0.03:0.02:5X5_100").dictionary, "5X5_100");
 }
 
@@ -44,6 +49,10 @@ TEST(Board, WrongDescriptionsAreNamed) {
   EXPECT_THAT(error("checkerboard:9x6:30"), HasSubstr("'30' is not a length in metres"));
   EXPECT_THAT(error("checkerboard:9x6:nan"), HasSubstr("'nan' is not a length"));
   EXPECT_THAT(error("checkerboard:9x6:3cm"), HasSubstr("'3cm' is not a number"));
+  EXPECT_THAT(error("checkerboard:9x6:0.03,"), HasSubstr("is neither SQUARE nor WIDTH,HEIGHT"));
+  EXPECT_THAT(error("checkerboard:9x6:0.03,0.03,0.03"), HasSubstr("is neither SQUARE nor"));
+  EXPECT_THAT(error("checkerboard:9x6:0.03,x"), HasSubstr("'x' is not a number"));
+  EXPECT_THAT(error("checkerboard:9x6:0.03,0.3"), HasSubstr("0.03 x 0.3 m are not nearly square"));
   EXPECT_THAT(error("charuco:8x6:0.03"), HasSubstr("SQUARE:MARKER"));
   EXPECT_THAT(error("charuco:8x6:0.03:0.04"), HasSubstr("does not fit into a square"));
   EXPECT_THAT(error("charuco:8x6:0.03:0.02:9X9"),
