@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Flat calibration targets, and the detection of their corners in photographs.
+// Flat calibration targets. see_board.h finds them in photographs.
 #pragma once
 
 #include <Eigen/Core>
-#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
@@ -57,11 +56,5 @@ struct Corner {
   // In pixels of the photograph, whose centres have integer coordinates.
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
 };
-
-// Returns the corners in a grey photograph, to fractions of a pixel, in any order. Empty if no
-// board is found. All corners of a checkerboard must be visible; see_board() (photographs.h) also
-// finds a piece of a checkerboard. The other boards may be visible in part; the result then has the
-// visible corners. Precondition: `board` is a result of parse_board().
-std::vector<Corner> find_corners(const cv::Mat1b& photograph, const Board& board);
 
 }  // namespace axial::calibrate

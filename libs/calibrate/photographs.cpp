@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibrate/photographs.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <opencv2/imgproc.hpp>
 #include <string_view>
-#include <utility>
 
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "base/first_error.h"
 #include "base/parallel.h"
-#include "calibrate/piece.h"
+#include "calibrate/see_board.h"
 #include "io/images/bit_depth.h"
 #include "io/images/image.h"
 
@@ -54,15 +51,6 @@ cv::Mat1b read_grey(const fs::path& path, int bits) {
   return grey;
 }
 
-std::string fault_of(const Piece& piece) {
-  if (piece.corners.empty()) return "no checkerboard is found";
-  return fmt::format(
-      "{} corners of the checkerboard are found, in {} columns and {} rows; the least piece has 3 "
-      "x "
-      "4 corners",
-      piece.corners.size(), piece.columns, piece.rows);
-}
-
 template <class Body>
 void for_each_photograph(std::span<const fs::path> photographs, const Body& body) {
   FirstError error;
@@ -82,27 +70,6 @@ std::vector<fs::path> photographs_in(std::span<const fs::path> input) {
       photographs.push_back(path);
   }
   return photographs;
-}
-
-View see_board(const std::string& name, const cv::Mat1b& photograph, const Board& board) {
-  View view{name, find_corners(photograph, board)};
-  if (board.kind != BoardKind::checkerboard) {
-    if (view.corners.empty()) view.fault = "no marker of the board is found";
-    return view;
-  }
-  if (!view.corners.empty()) {
-    view.turned = turned_board(board, view.corners);
-    return view;
-  }
-  Piece piece = find_piece(photograph, board);
-  if (!piece.suffices()) {
-    view.fault = fault_of(piece);
-    return view;
-  }
-  view.piece = true;
-  view.corners = std::move(piece.corners);
-  view.turned = std::move(piece.turned);
-  return view;
 }
 
 std::vector<View> find_views(std::span<const fs::path> photographs, const Board& board,

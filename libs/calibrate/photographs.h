@@ -20,20 +20,14 @@ namespace axial::calibrate {
 // photographs.
 std::vector<std::filesystem::path> photographs_in(std::span<const std::filesystem::path> input);
 
-// Finds the corners of the board in a grey photograph. If no whole checkerboard is found, the view
-// has the corners of the largest piece of the checkerboard. The piece must have 12 corners or more,
-// and at least 3 columns and 3 rows of them. `name`: View::image of the result. Without the board
-// or such a piece, the view has no corners, and View::fault says why.
-View see_board(const std::string& name, const cv::Mat1b& photograph, const Board& board);
-
-// Finds the corners of the board in every photograph, by see_board(). Returns one view per
-// photograph, in the order of `photographs`. A view has the name of the photograph's file, without
-// its folder. Corners are not sought in transparent pixels.
-// Throws an Error that names a photograph that cannot be read or differs in size from `lens`. If
-// there are several such photographs, it is the same one for any number of threads.
-// `bit_depth`: the number of bits, from 8 to 16, that the values of 16-bit photographs use. 0: as
-// many bits as the largest value in all photographs needs, but at least 8 (io::common_bit_depth).
-// Messages call this number `bit_depth_name`.
+// Finds the corners of the board in every photograph, by see_board() (see_board.h). Returns one
+// view for each photograph, in the order of `photographs`. A view has the name of the photograph's
+// file, without its folder. Corners are not sought in transparent pixels. Throws an Error that
+// names a photograph that cannot be read or differs in size from `lens`. If there are several such
+// photographs, it is the same one for any number of threads. `bit_depth`: the number of bits, from
+// 8 to 16, that the values of 16-bit photographs use. 0: as many bits as the largest value in all
+// photographs needs, but at least 8 (io::common_bit_depth). Messages call this number
+// `bit_depth_name`.
 std::vector<View> find_views(std::span<const std::filesystem::path> photographs, const Board& board,
                              const io::ColmapCamera& lens, int bit_depth = 0,
                              const std::string& bit_depth_name = "bit_depth");

@@ -2,6 +2,7 @@
 // Private to libs/calibrate: checkerboards that a photograph shows in part.
 #pragma once
 
+#include <opencv2/core.hpp>
 #include <vector>
 
 #include "calibrate/board.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibrate/whole_board.h"
+
 #include <algorithm>
 #include <limits>
 #include <opencv2/calib3d.hpp>
 
-#include "calibrate/board.h"
-#include "calibrate/marker_board.h"
 #include "calibrate/refine_corners.h"
 
 namespace axial::calibrate {
@@ -24,15 +24,7 @@ double least_spacing(const std::vector<cv::Point2f>& corners, cv::Size size) {
   return least;
 }
 
-// OpenCV's older detector finds boards that have hardly any margin.
-bool find_at_the_margin(const cv::Mat1b& photograph, cv::Size size,
-                        std::vector<cv::Point2f>& corners) {
-  constexpr int kFlags =
-      cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
-  return cv::findChessboardCorners(photograph, size, corners, kFlags);
-}
-
-// True if OpenCV's detectors guessed corners that are hidden. Corners at the border of the
+// True if a detector guessed corners that are hidden. Corners at the border of the
 // photograph are not examined.
 bool guessed(const cv::Mat1b& photograph, int half, const std::vector<Corner>& corners) {
   constexpr double kHidden = 0.3;  // far above the asymmetry of a visible corner
@@ -44,17 +36,9 @@ bool guessed(const cv::Mat1b& photograph, int half, const std::vector<Corner>& c
          *std::ranges::max_element(asymmetries) > hidden_above(asymmetries, kHidden);
 }
 
-}  // namespace
-
-std::vector<Corner> find_corners(const cv::Mat1b& photograph, const Board& board) {
-  if (board.kind != BoardKind::checkerboard) return find_marker_corners(photograph, board);
-  const cv::Size size(board.columns, board.rows);
-  constexpr int kFlags =
-      cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE | cv::CALIB_CB_ACCURACY;
-  std::vector<cv::Point2f> corners;
-  if (!cv::findChessboardCornersSB(photograph, size, corners, kFlags) &&
-      !find_at_the_margin(photograph, size, corners))
-    return {};
+// The corners of a detector, moved to the intersections of edges. Empty if the detector guessed.
+std::vector<Corner> exact(const cv::Mat1b& photograph, cv::Size size,
+                          std::vector<cv::Point2f>& corners) {
   const int half = window_for(least_spacing(corners, size));
   move_to_edges(photograph, half, corners);
   std::vector<Corner> found;
@@ -62,6 +46,26 @@ std::vector<Corner> find_corners(const cv::Mat1b& photograph, const Board& board
   for (const cv::Point2f& p : corners) found.push_back({found.size(), {p.x, p.y}});
   if (guessed(photograph, half, found)) return {};
   return found;
+}
+
+}  // namespace
+
+std::vector<Corner> find_whole_board(const cv::Mat1b& photograph, const Board& board) {
+  const cv::Size size(board.columns, board.rows);
+  constexpr int kFlags =
+      cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE | cv::CALIB_CB_ACCURACY;
+  std::vector<cv::Point2f> corners;
+  if (!cv::findChessboardCornersSB(photograph, size, corners, kFlags)) return {};
+  return exact(photograph, size, corners);
+}
+
+std::vector<Corner> find_board_without_margin(const cv::Mat1b& photograph, const Board& board) {
+  const cv::Size size(board.columns, board.rows);
+  constexpr int kFlags =
+      cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
+  std::vector<cv::Point2f> corners;
+  if (!cv::findChessboardCorners(photograph, size, corners, kFlags)) return {};
+  return exact(photograph, size, corners);
 }
 
 }  // namespace axial::calibrate
