@@ -102,10 +102,8 @@ void check_outputs(const Options& options, std::vector<fs::path> inputs) {
 }
 
 void warn(const calibrate::Calibration& calibration) {
-  for (const std::string& image : calibration.left_out)
-    log_warning(
-        "{}: left out: too few corners were found, or too few corners fit one pose of the board",
-        image);
+  for (const auto& [image, reason] : calibration.left_out)
+    log_warning("{}: left out: {}", image, reason);
   for (const std::string& gap : calibrate::gaps(calibration))
     log_warning("No photograph shows {}", gap);
 }

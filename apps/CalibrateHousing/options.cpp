@@ -35,7 +35,8 @@ void declare_files(OptionList& visible, Options& options, Texts& texts) {
            "file's default port)")
       .add("board", &texts.board,
            "the board, with columns, rows and lengths in metres: checkerboard:9x6:0.03 (inner "
-           "corners, square), charuco:8x6:0.03:0.02 (squares, square, marker) or "
+           "corners, square; 0.03,0.0298: width and height of a square), charuco:8x6:0.03:0.02 "
+           "(squares, square, marker) or "
            "apriltags:5x4:0.03:0.01 (tags, tag, gap); charuco and apriltags may end in :DICTIONARY")
       .add("output-file,o", &texts.output, "housing file to write (.json)")
       .add("calibmar", &texts.calibmar, "also write a calibration.yaml for Calibmar")

@@ -19,6 +19,7 @@ struct Photograph {
   std::string name;
   std::size_t found = 0, used = 0;  // corners
   double rms = 0;                   // [px]
+  bool piece = false;
   calibrate::BoardPlace place;
 };
 
@@ -28,7 +29,8 @@ std::vector<Photograph> photographs_of(const Calibration& calibration) {
   std::vector<Photograph> rows;
   for (std::size_t i = 0; i < errors.size(); ++i)
     rows.push_back({bundle.images[i].name, calibration.views[i].corners.size(), errors[i].size(),
-                    pose::root_mean_square(errors[i]), calibrate::board_place(bundle, i)});
+                    pose::root_mean_square(errors[i]), calibration.views[i].piece,
+                    calibrate::board_place(bundle, i, calibration.views[i])});
   return rows;
 }
 
@@ -54,10 +56,14 @@ std::vector<std::string> report_lines(const Calibration& calibration,
   lines.push_back(fmt::format("{:<32} {:>8} {:>9} {:>13} {:>15}", "photograph", "corners",
                               "RMS [px]", "distance [m]", "tilt [degrees]"));
   for (const Photograph& row : photographs_of(calibration))
-    lines.push_back(fmt::format("{:<32} {:>8} {:>9.3f} {:>13.3f} {:>15.1f}", row.name, row.used,
-                                row.rms, row.place.distance, row.place.tilt_degrees));
+    lines.push_back(fmt::format("{:<32} {:>8} {:>9.3f} {:>13.3f} {:>15.1f}{}", row.name, row.used,
+                                row.rms, row.place.distance, row.place.tilt_degrees,
+                                row.piece ? "  piece" : ""));
   lines.push_back(fmt::format("{:<32} {:>8} {:>9.3f}", "all",
                               calibration.bundle.bundle.observations.size(), rms_of(calibration)));
+  if (const std::size_t pieces = calibration.pieces(); pieces > 0)
+    lines.push_back(fmt::format("{} photographs show the whole board, {} a piece of the board",
+                                calibration.views.size() - pieces, pieces));
   for (const pose::FreeValue& value : values_of(calibration))
     lines.push_back(fmt::format("Port {}: {} {:.6g} +- {:.2g} {}", port_name, value.name, value.now,
                                 value.sigma, value.unit));
@@ -81,8 +87,14 @@ std::string report_json(const Calibration& calibration, const calibrate::Limits&
                                    {"corners_used", row.used},
                                    {"rms_px", row.rms},
                                    {"distance_m", row.place.distance},
-                                   {"tilt_degrees", row.place.tilt_degrees}});
-  json["left_out"] = calibration.left_out;
+                                   {"tilt_degrees", row.place.tilt_degrees},
+                                   {"piece", row.piece}});
+  json["pieces"] = calibration.pieces();
+  json["left_out"] = json["left_out_reasons"] = Json::array();
+  for (const auto& [image, reason] : calibration.left_out) {
+    json["left_out"].push_back(image);
+    json["left_out_reasons"].push_back(reason);
+  }
   json["missing"] = calibrate::gaps(calibration);
   if (const auto next = calibrate::next_photograph(calibration, limits))
     json["next_photograph"] = calibrate::words_for(next->board);

@@ -76,11 +76,23 @@ pose::ColmapBundle believable(const Calibration& calibration) {
   }
 }
 
-double nearest(const pose::Bundle& bundle) {
+double nearest(const pose::Bundle& bundle, const std::vector<View>& views) {
   double least = kInfinite;
   for (std::size_t i = 0; i < bundle.images.size(); ++i)
-    least = std::min(least, board_place(bundle, i).distance);
+    least = std::min(least, board_place(bundle, i, views[i]).distance);
   return least;
+}
+
+Eigen::Vector3d middle_of(const pose::Bundle& bundle) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const pose::BundlePoint& point : bundle.points) sum += point.position;
+  return sum / static_cast<double>(bundle.points.size());
+}
+
+Eigen::Vector3d middle_of_piece(const pose::Bundle& bundle, const View& view) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Corner& corner : view.corners) sum += bundle.points[corner.number].position;
+  return sum / static_cast<double>(view.corners.size());
 }
 
 void add_edges(const Calibration& calibration, std::vector<std::string>& missing) {
@@ -108,10 +120,8 @@ void add_edges(const Calibration& calibration, std::vector<std::string>& missing
 
 }  // namespace
 
-BoardPlace board_place(const pose::Bundle& bundle, std::size_t image) {
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const pose::BundlePoint& point : bundle.points) middle += point.position;
-  middle /= static_cast<double>(bundle.points.size());
+BoardPlace board_place(const pose::Bundle& bundle, std::size_t image, const View& view) {
+  const Eigen::Vector3d middle = view.piece ? middle_of_piece(bundle, view) : middle_of(bundle);
   const Pose& pose = bundle.images[image].pose;
   const double cosine = std::min(1.0, std::abs(pose.rotation(2, 2)));
   return {pose.to_camera(middle).norm(), std::acos(cosine) * 180 / std::numbers::pi};
@@ -123,7 +133,7 @@ std::vector<std::string> gaps(const Calibration& calibration) {
   const pose::Bundle& bundle = calibration.bundle.bundle;
   double steepest = 0, near = kInfinite, far = 0;
   for (std::size_t i = 0; i < bundle.images.size(); ++i) {
-    const BoardPlace place = board_place(bundle, i);
+    const BoardPlace place = board_place(bundle, i, calibration.views[i]);
     steepest = std::max(steepest, place.tilt_degrees);
     near = std::min(near, place.distance);
     far = std::max(far, place.distance);
@@ -143,7 +153,8 @@ std::optional<NextPhotograph> next_photograph(const Calibration& calibration,
   constexpr double kNoLess = 0.1;  // [px]: few photographs may fit better than corners are detected
   const double noise = std::max(kNoLess, calibration.uncertainty.pixel_sigma);
   const Information known = total_information(bundle.bundle, calibration.adjust, noise);
-  const auto boards = placed_boards(bundle, corners, 0.8 * nearest(bundle.bundle));
+  const auto boards =
+      placed_boards(bundle, corners, 0.8 * nearest(bundle.bundle, calibration.views));
   std::vector<View> views;
   std::vector<Pose> poses;
   for (const PlacedBoard& board : boards) {

@@ -53,13 +53,14 @@ std::optional<NextPhotograph> next_photograph(const Calibration& calibration, co
 // limit, the gaps of the photographs, and the next photograph to take.
 void require_known(const Calibration& calibration, const Limits& limits);
 
-// The place of the board relative to the camera in one image.
+// The place of the board, or of the visible piece of the board, relative to the camera in one
+// image.
 struct BoardPlace {
-  double distance = 0;      // from the camera's centre to the mean of the board's corners [m]
+  double distance = 0;      // from the camera's centre to the mean of its corners [m]
   double tilt_degrees = 0;  // angle between the board and the image plane, from 0 to 90
 };
 // Returns the place of the board in the image with the index `image` in bundle.images. `bundle`: a
-// bundle of board_bundle() (board_bundle.h) with known poses.
-BoardPlace board_place(const pose::Bundle& bundle, std::size_t image);
+// bundle of board_bundle() (board_bundle.h) with known poses. `view`: the view of the image.
+BoardPlace board_place(const pose::Bundle& bundle, std::size_t image, const View& view);
 
 }  // namespace axial::calibrate

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibrate/board.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <sstream>
@@ -50,6 +51,19 @@ void read_counts(const std::string& word, const std::string& text, Board& board)
            least, kMost);
 }
 
+// SQUARE or WIDTH,HEIGHT of a checkerboard.
+void read_square(const std::string& word, const std::string& text, Board& board) {
+  const std::vector<std::string> sides = split(word, ',');
+  if (sides.empty() || sides.size() > 2 || word.back() == ',')
+    fail("{}: '{}' is neither SQUARE nor WIDTH,HEIGHT", text, word);
+  board.size = metres(sides[0], text);
+  const double height = metres(sides.back(), text);
+  constexpr double kMostRatio = 1.5;
+  if (std::max(height, board.size) > kMostRatio * std::min(height, board.size))
+    fail("{}: squares of {} x {} m are not nearly square", text, board.size, height);
+  if (height != board.size) board.second = height;
+}
+
 constexpr std::array<std::pair<std::string_view, BoardKind>, 3> kKinds{
     {{"checkerboard", BoardKind::checkerboard},
      {"charuco", BoardKind::charuco},
@@ -71,12 +85,15 @@ Board parse_board(const std::string& text) {
   const std::size_t least = markers ? 4 : 3, most = markers ? 5 : 3;
   if (parts.size() < least || parts.size() > most)
     fail(
-        "{}: must be checkerboard:COLUMNSxROWS:SQUARE, charuco:COLUMNSxROWS:SQUARE:MARKER or "
-        "apriltags:COLUMNSxROWS:TAG:GAP, in metres",
+        "{}: must be checkerboard:COLUMNSxROWS:SQUARE (or WIDTH,HEIGHT of a square), "
+        "charuco:COLUMNSxROWS:SQUARE:MARKER or apriltags:COLUMNSxROWS:TAG:GAP, in metres",
         text);
   read_counts(parts[1], text, board);
+  if (!markers) {
+    read_square(parts[2], text, board);
+    return board;
+  }
   board.size = metres(parts[2], text);
-  if (!markers) return board;
   board.second = metres(parts[3], text);
   if (board.kind == BoardKind::charuco && board.second >= board.size)
     fail("{}: a marker of {} m does not fit into a square of {} m", text, board.second, board.size);
@@ -86,12 +103,17 @@ Board parse_board(const std::string& text) {
   return board;
 }
 
+bool has_two_pitches(const Board& board) {
+  return board.kind == BoardKind::checkerboard && board.second > 0;
+}
+
 std::vector<Eigen::Vector3d> corners_of(const Board& board) {
   if (board.kind != BoardKind::checkerboard) return marker_board_corners(board);
+  const double height = has_two_pitches(board) ? board.second : board.size;
   std::vector<Eigen::Vector3d> corners;
   for (int row = 0; row < board.rows; ++row)
     for (int column = 0; column < board.columns; ++column)
-      corners.emplace_back(column * board.size, row * board.size, 0);
+      corners.emplace_back(column * board.size, row * height, 0);
   return corners;
 }
 

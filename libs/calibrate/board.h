@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Flat calibration targets, and the detection of their corners in photographs.
+// Flat calibration targets. see_board.h finds them in photographs.
 #pragma once
 
 #include <Eigen/Core>
-#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
@@ -17,8 +16,10 @@ struct Board {
   BoardKind kind = BoardKind::checkerboard;
   // Checkerboard: numbers of inner corners. ChArUco: of squares. AprilTags: of tags.
   int columns = 0, rows = 0;
-  double size = 0;    // side of a square, or of a tag with its black border [m]
-  double second = 0;  // ChArUco: side of a marker. AprilTags: gap between tags [m]. Checkerboard: 0
+  double size = 0;  // side of a square, or of a tag with its black border [m]
+  // ChArUco: side of a marker [m]. AprilTags: gap between tags [m]. Checkerboard: height of a
+  // square [m], if it differs from its width `size`; else 0.
+  double second = 0;
   // OpenCV's name of the set of markers: "4X4_50", "APRILTAG_36h11". Checkerboard: empty.
   std::string dictionary;
 };
@@ -26,14 +27,20 @@ struct Board {
 // Reads a board from a text of one of these forms:
 //
 //     checkerboard:COLUMNSxROWS:SQUARE                     inner corners
-//     charuco:COLUMNSxROWS:SQUARE:MARKER[:DICTIONARY]      squares; default 4X4_50
+//     checkerboard:COLUMNSxROWS:WIDTH,HEIGHT               of a square: prints are not always
+//     square charuco:COLUMNSxROWS:SQUARE:MARKER[:DICTIONARY]      squares; default 4X4_50
 //     apriltags:COLUMNSxROWS:TAG:GAP[:DICTIONARY]          tags; default APRILTAG_36h11
 //
 // COLUMNS and ROWS are from 3 to 100 (tags: from 1 to 100). Lengths are in metres, above 0 and at
-// most 10. MARKER must be smaller than SQUARE. The dictionary must have enough markers, which are
+// most 10. MARKER must be smaller than SQUARE. WIDTH and HEIGHT must not differ by a factor of more
+// than 1.5. The dictionary must have enough markers, which are
 // numbered from 0, row by row. If `text` does not comply, throws an Error that contains `text` and
 // the reason.
 Board parse_board(const std::string& text);
+
+// True for a checkerboard whose squares are not square: it looks different after a quarter of a
+// turn, however many columns and rows it has.
+bool has_two_pitches(const Board& board);
 
 // All corners [m] in the frame of the board. The index of a corner is its Corner::number.
 // Precondition: `board` is a result of parse_board().
@@ -49,11 +56,5 @@ struct Corner {
   // In pixels of the photograph, whose centres have integer coordinates.
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
 };
-
-// Returns the corners in a grey photograph, to fractions of a pixel, in any order. Empty if no
-// board is found. All corners of a checkerboard must be visible. The other boards may be visible in
-// part; the result then has the visible corners. Precondition: `board` is a result of
-// parse_board().
-std::vector<Corner> find_corners(const cv::Mat1b& photograph, const Board& board);
 
 }  // namespace axial::calibrate

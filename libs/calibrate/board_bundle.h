@@ -16,6 +16,14 @@ namespace axial::calibrate {
 struct View {
   std::string image;  // the name of the photograph, in messages and lists
   std::vector<Corner> corners;
+  // True: the photograph shows a piece of a checkerboard. Its corners have the numbers of an equal
+  // piece at the first corner of the board, because the place of the piece on the board is unknown.
+  // Each photograph has a pose of its own, so that the place does not matter.
+  bool piece = false;
+  // The corners with their numbers after a quarter of a turn, if this is possible, too. Else empty.
+  std::vector<Corner> turned = {};
+  // Why there are no corners, as a text that follows the name of the photograph.
+  std::string fault = {};
 };
 
 // Returns a bundle with one camera, `lens` behind `port`. The images of the bundle are the views,

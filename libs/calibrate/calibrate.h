@@ -17,6 +17,12 @@ struct CalibrateOptions {
   double max_error = 4;  // corners with larger reprojection errors are dropped [px]
 };
 
+// A photograph that calibrate() does not use.
+struct LeftOut {
+  std::string image;   // View::image
+  std::string reason;  // a text that follows the name
+};
+
 // The result of calibrate().
 struct Calibration {
   std::vector<View> views;  // the used photographs, with all corners that were found
@@ -27,9 +33,12 @@ struct Calibration {
   pose::AdjustReport last;     // report of the last adjustment
   // Standard deviations of the result; that of the scale has no use here.
   pose::Uncertainty uncertainty;
-  // The names (View::image) of the photographs that are not used, for one of three reasons: too few
-  // corners, corners that do not determine a pose, or too few corners that fit.
-  std::vector<std::string> left_out;
+  // The photographs that are not used, for one of four reasons: too few corners, corners that do
+  // not determine a pose, too few corners that fit, or a piece that is not one of the board.
+  std::vector<LeftOut> left_out;
+
+  // The number of `views` that show a piece of a checkerboard.
+  std::size_t pieces() const;
 
   // The calibrated camera: the measured and the calibrated numbers.
   const pose::BundleCamera& camera() const { return bundle.bundle.cameras[0]; }
@@ -41,6 +50,12 @@ struct Calibration {
 // `corners`: the corners of the board [m], in the order of their numbers.
 // A photograph is used if it shows 8 corners or more, if its corners determine its pose, and if 8
 // corners or more have an error of at most max_error (4 max_error in the first of three rounds).
+// A piece of a checkerboard (View::piece) may be wrong as a whole, for example because a row is
+// skipped in it. It is left out if more than a quarter of its corners are dropped, or if the RMS of
+// its errors is more than four times the median of all photographs, and more than 0.5 px.
+// Views whose corners can be numbered in two ways (View::turned) get the numbers with the smaller
+// errors. They are chosen with the measured port, and again with the calibrated port, until no
+// choice changes, at most four times.
 // Throws an Error if fewer than 3 photographs can be used. Whether the result is precise enough is
 // checked separately (advice.h).
 Calibration calibrate(const io::ColmapCamera& lens, const refractive::Port<double>& port,

@@ -76,8 +76,10 @@ std::string coverage_svg(const Calibration& calibration) {
   const std::vector<double> errors = reprojection_errors(bundle);
   const double usual = pose::root_mean_square(errors);
   Drawing drawing(calibration.bundle.lenses[0]);
-  drawing.head(fmt::format("{} corners in {} photographs, RMS {:.2f} px", errors.size(),
-                           calibration.views.size(), usual));
+  const std::size_t pieces = calibration.pieces();
+  drawing.head(fmt::format("{} corners in {} photographs{}, RMS {:.2f} px", errors.size(),
+                           calibration.views.size(),
+                           pieces > 0 ? fmt::format(" ({} of a piece)", pieces) : "", usual));
   drawing.grid();
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const pose::Observation& seen = bundle.observations[i];

@@ -2,6 +2,7 @@
 // Private to libs/calibrate: boards of markers, with OpenCV's aruco module.
 #pragma once
 
+#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,10 @@ namespace axial::calibrate {
 // markers for `board`.
 void check_markers(const Board& board, const std::string& where);
 
-// Return what corners_of() and find_corners() (board.h) return for a ChArUco board or a board of
-// AprilTags. Precondition: check_markers() accepts `board`.
+// Returns what corners_of() (board.h) returns for a ChArUco board or a board of AprilTags.
+// Precondition: check_markers() accepts `board`.
 std::vector<Eigen::Vector3d> marker_board_corners(const Board& board);
+// Returns the visible corners, in any order. The precondition is the same.
 std::vector<Corner> find_marker_corners(const cv::Mat1b& photograph, const Board& board);
 
 }  // namespace axial::calibrate

@@ -10,6 +10,7 @@
 #include "base/file_extension.h"
 #include "base/first_error.h"
 #include "base/parallel.h"
+#include "calibrate/see_board.h"
 #include "io/images/bit_depth.h"
 #include "io/images/image.h"
 
@@ -82,8 +83,8 @@ std::vector<View> find_views(std::span<const fs::path> photographs, const Board&
   const int bits = io::common_bit_depth(photographs, headers, bit_depth, bit_depth_name);
   std::vector<View> views(photographs.size());
   for_each_photograph(photographs, [&](std::size_t i) {
-    views[i] = {photographs[i].filename().string(),
-                find_corners(read_grey(photographs[i], bits), board)};
+    views[i] =
+        see_board(photographs[i].filename().string(), read_grey(photographs[i], bits), board);
   });
   return views;
 }

@@ -20,14 +20,14 @@ namespace axial::calibrate {
 // photographs.
 std::vector<std::filesystem::path> photographs_in(std::span<const std::filesystem::path> input);
 
-// Finds the corners of the board in every photograph. Returns one view per photograph, in the order
-// of `photographs`. A view has the name of the photograph's file, without its folder. It has no
-// corners if the board is not found. Corners are not sought in transparent pixels.
-// Throws an Error that names a photograph that cannot be read or differs in size from `lens`. If
-// there are several such photographs, it is the same one for any number of threads.
-// `bit_depth`: the number of bits, from 8 to 16, that the values of 16-bit photographs use. 0: as
-// many bits as the largest value in all photographs needs, but at least 8 (io::common_bit_depth).
-// Messages call this number `bit_depth_name`.
+// Finds the corners of the board in every photograph, by see_board() (see_board.h). Returns one
+// view for each photograph, in the order of `photographs`. A view has the name of the photograph's
+// file, without its folder. Corners are not sought in transparent pixels. Throws an Error that
+// names a photograph that cannot be read or differs in size from `lens`. If there are several such
+// photographs, it is the same one for any number of threads. `bit_depth`: the number of bits, from
+// 8 to 16, that the values of 16-bit photographs use. 0: as many bits as the largest value in all
+// photographs needs, but at least 8 (io::common_bit_depth). Messages call this number
+// `bit_depth_name`.
 std::vector<View> find_views(std::span<const std::filesystem::path> photographs, const Board& board,
                              const io::ColmapCamera& lens, int bit_depth = 0,
                              const std::string& bit_depth_name = "bit_depth");

@@ -29,6 +29,7 @@ import false_alarms  # noqa: E402, F401
 import dives  # noqa: E402, F401
 import random_dives  # noqa: E402, F401
 import lawnmower  # noqa: E402, F401
+import boards  # noqa: E402, F401
 
 
 def source_state():

@@ -89,6 +89,32 @@ TEST(Advice, RefusesBoardsThatAllFaceTheCamera) {
   EXPECT_THAT(said, HasSubstr("nor a distance other than 0."));
 }
 
+// A piece at an unknown place of the board is where its corners are, not where a whole board would
+// be.
+TEST(Advice, ThePlaceOfAPieceIsTheMiddleOfItsCorners) {
+  auto taken = survey(kPinhole, flat_port(), {.views = 6});
+  std::vector<Eigen::Vector3d> middles;
+  for (std::size_t i = 0; i < taken.views.size(); ++i) {
+    View& view = taken.views[i];
+    std::erase_if(view.corners, [](const Corner& corner) { return corner.number % 9 < 5; });
+    view.piece = true;
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (Corner& corner : view.corners) {
+      middle += corners_of(kBoard)[corner.number] / static_cast<double>(view.corners.size());
+      corner.number -= 5;
+    }
+    middles.push_back(taken.poses[i].to_camera(middle));
+  }
+  CalibrateOptions options;
+  options.adjust.free = {true, true, true};
+  const Calibration found =
+      calibrate(kPinhole, flat_port(), taken.views, corners_of(kBoard), options);
+  ASSERT_EQ(found.pieces(), 6u);
+  for (std::size_t i = 0; i < 6; ++i)
+    EXPECT_NEAR(board_place(found.bundle.bundle, i, found.views[i]).distance, middles[i].norm(),
+                1e-6);
+}
+
 // Few photographs, all with the board in the middle.
 Calibration in_need_of_advice() {
   return calibrated({.views = 5,
@@ -164,7 +190,7 @@ TEST(Advice, NoOtherPhotographHelpsMuchMoreOnceTaken) {
   }
   double nearest = 1e9;
   for (std::size_t i = 0; i < found.views.size(); ++i)
-    nearest = std::min(nearest, board_place(found.bundle.bundle, i).distance);
+    nearest = std::min(nearest, board_place(found.bundle.bundle, i, found.views[i]).distance);
   std::vector<double> others;
   const auto boards = placed_boards(found.bundle, corners_of(kBoard), 0.8 * nearest);
   for (std::size_t i = 0; i < boards.size(); i += 4)

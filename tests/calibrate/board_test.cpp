@@ -8,6 +8,7 @@
 #include <opencv2/aruco/charuco.hpp>
 
 #include "calibrate/board_survey.h"
+#include "calibrate/see_board.h"
 #include "pose/bundle.h"
 #include "support/error_of.h"
 #include "support/photograph.h"
@@ -29,6 +30,11 @@ TEST(Board, IsReadFromItsDescription) {
   const auto tags = corners_of(parse_board("apriltags:3x2:0.04:0.01"));
   ASSERT_EQ(tags.size(), 24u);
   EXPECT_LT((tags[4 * 4 + 2] - Eigen::Vector3d(0.09, 0.09, 0)).norm(), 1e-15);
+  EXPECT_FALSE(has_two_pitches(checkers));
+  EXPECT_FALSE(has_two_pitches(parse_board("checkerboard:9x6:0.03,0.03")));
+  const Board uneven = parse_board("checkerboard:8x7:0.0338,0.0335");
+  EXPECT_TRUE(has_two_pitches(uneven));
+  EXPECT_EQ(corners_of(uneven)[9], Eigen::Vector3d(0.0338, 0.0335, 0));
   EXPECT_EQ(parse_board("charuco:8x6:0.03:0.02:5X5_100").dictionary, "5X5_100");
 }
 
@@ -44,6 +50,10 @@ TEST(Board, WrongDescriptionsAreNamed) {
   EXPECT_THAT(error("checkerboard:9x6:30"), HasSubstr("'30' is not a length in metres"));
   EXPECT_THAT(error("checkerboard:9x6:nan"), HasSubstr("'nan' is not a length"));
   EXPECT_THAT(error("checkerboard:9x6:3cm"), HasSubstr("'3cm' is not a number"));
+  EXPECT_THAT(error("checkerboard:9x6:0.03,"), HasSubstr("is neither SQUARE nor WIDTH,HEIGHT"));
+  EXPECT_THAT(error("checkerboard:9x6:0.03,0.03,0.03"), HasSubstr("is neither SQUARE nor"));
+  EXPECT_THAT(error("checkerboard:9x6:0.03,x"), HasSubstr("'x' is not a number"));
+  EXPECT_THAT(error("checkerboard:9x6:0.03,0.3"), HasSubstr("0.03 x 0.3 m are not nearly square"));
   EXPECT_THAT(error("charuco:8x6:0.03"), HasSubstr("SQUARE:MARKER"));
   EXPECT_THAT(error("charuco:8x6:0.03:0.04"), HasSubstr("does not fit into a square"));
   EXPECT_THAT(error("charuco:8x6:0.03:0.02:9X9"),
@@ -62,13 +72,13 @@ Pose pose_before(const Board& board) {
   return pose;
 }
 
-TEST(FindCorners, OfACheckerboardAreWhereTheExactProjectionPutsThem) {
+TEST(SeeBoard, OfACheckerboardAreWhereTheExactProjectionPutsThem) {
   const Board board = testing::kBoard;
   const Pose pose = pose_before(board);
   const auto camera = testing::camera_of(kPinhole, flat_port());
   const cv::Mat1b image =
       test::photograph(camera, pose, test::checkerboard(board.columns, board.rows, board.size));
-  const auto found = find_corners(image, board);
+  const auto found = see_board("", image, board).corners;
   const auto expected =
       testing::seen_corners(kPinhole, flat_port(), pose, board, testing::SurveyOptions().within);
   ASSERT_EQ(found.size(), 54u);
@@ -82,11 +92,11 @@ TEST(FindCorners, OfACheckerboardAreWhereTheExactProjectionPutsThem) {
   EXPECT_LT(std::sqrt(sum2 / 54), 0.1);
 }
 
-TEST(FindCorners, NoneInAnEmptyPhotograph) {
+TEST(SeeBoard, NoneInAnEmptyPhotograph) {
   const cv::Mat1b grey(480, 640, static_cast<unsigned char>(128));
-  EXPECT_TRUE(find_corners(grey, testing::kBoard).empty());
-  EXPECT_TRUE(find_corners(grey, parse_board("charuco:8x6:0.03:0.02")).empty());
-  EXPECT_TRUE(find_corners(grey, parse_board("apriltags:4x3:0.04:0.01")).empty());
+  EXPECT_TRUE(see_board("", grey, testing::kBoard).corners.empty());
+  EXPECT_TRUE(see_board("", grey, parse_board("charuco:8x6:0.03:0.02")).corners.empty());
+  EXPECT_TRUE(see_board("", grey, parse_board("apriltags:4x3:0.04:0.01")).corners.empty());
 }
 
 // Boards of markers may be visible in part: every corner lies where the exact projection images the
@@ -110,7 +120,7 @@ Errors errors_behind_port(const Board& board, const cv::Mat1b& print, double wid
     pose.centre = Eigen::Vector3d(width / 2, height / 2, 0) -
                   pose.rotation.transpose() * Eigen::Vector3d(aside, 0.01, 0.3);
     const cv::Mat1b image = test::photograph(model, pose, test::picture(print, width, height));
-    const auto found = find_corners(image, board);
+    const auto found = see_board("", image, board).corners;
     EXPECT_GE(found.size(), least_corners);
     if (found.empty()) return {1e9, 1e9, {1e9, 1e9}};
     for (const Corner& corner : found) {
@@ -124,7 +134,7 @@ Errors errors_behind_port(const Board& board, const cv::Mat1b& print, double wid
           sum / static_cast<double>(errors.size())};
 }
 
-TEST(FindCorners, OfACharucoBoardAreWhereTheExactProjectionPutsThem) {
+TEST(SeeBoard, OfACharucoBoardAreWhereTheExactProjectionPutsThem) {
   const Board board = parse_board("charuco:8x6:0.025:0.018");
   const auto printed = cv::aruco::CharucoBoard::create(
       8, 6, 0.025f, 0.018f, cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50));
@@ -138,7 +148,7 @@ TEST(FindCorners, OfACharucoBoardAreWhereTheExactProjectionPutsThem) {
   EXPECT_LT(errors.mean.norm(), 0.05);
 }
 
-TEST(FindCorners, OfAprilTagsAreWhereTheExactProjectionPutsThem) {
+TEST(SeeBoard, OfAprilTagsAreWhereTheExactProjectionPutsThem) {
   const Board board = parse_board("apriltags:5x4:0.03:0.01");
   const auto printed = cv::aruco::GridBoard::create(
       5, 4, 0.03f, 0.01f, cv::aruco::getPredefinedDictionary(cv::aruco::DICT_APRILTAG_36h11));

@@ -28,6 +28,12 @@ CalibrateOptions unknown(std::initializer_list<std::size_t> numbers) {
   return options;
 }
 
+std::vector<std::string> names_of(const std::vector<LeftOut>& left_out) {
+  std::vector<std::string> names;
+  for (const LeftOut& photograph : left_out) names.push_back(photograph.image);
+  return names;
+}
+
 const std::initializer_list<std::size_t> kPlace{0, 1, 2};  // normal and distance, or centre
 
 template <class Port>
@@ -187,7 +193,8 @@ TEST(Calibrate, LeavesOutWhatDoesNotFit) {
   taken.views[9].corners.resize(5);
   const Calibration found =
       calibrate(kPinhole, rough_flat_port(), taken.views, corners_of(kBoard), unknown(kPlace));
-  EXPECT_EQ(found.left_out, std::vector<std::string>{"view9.png"});
+  EXPECT_EQ(names_of(found.left_out), std::vector<std::string>{"view9.png"});
+  EXPECT_EQ(found.left_out[0].reason, "5 corners of the board are found, at least 8 are needed");
   EXPECT_EQ(found.bundle.bundle.observations.size(), 24u * 54 - 6 - 2);
   EXPECT_NEAR(found_port<FlatPort<double>>(found).distance, 0.025, 0.0005);
 }
@@ -217,7 +224,7 @@ TEST(Calibrate, LeavesOutWhatDoesNotTellWhereTheBoardIs) {
   taken.views.insert(taken.views.begin() + 2, {beyond, in_one_place});
   const Calibration found =
       calibrate(folding, flat_port(), taken.views, corners_of(kBoard), unknown(kPlace));
-  EXPECT_EQ(found.left_out, (std::vector<std::string>{"beyond.png", "point.png"}));
+  EXPECT_EQ(names_of(found.left_out), (std::vector<std::string>{"beyond.png", "point.png"}));
   ASSERT_EQ(found.views.size(), 5u);
   EXPECT_NEAR(found_port<FlatPort<double>>(found).distance, 0.025, 1e-6);
 }
@@ -235,13 +242,89 @@ TEST(Calibrate, PlacesBoardsOnTheRightOneOfTheirTwoSides) {
         << i;
 }
 
+// The corners of some columns and rows, with the numbers of a piece.
+View piece_in(const View& view, const Board& board, const Eigen::AlignedBox2i& cells) {
+  View piece{view.image, {}, true};
+  for (const Corner& corner : view.corners) {
+    const int number = static_cast<int>(corner.number);
+    const Eigen::Vector2i cell(number % board.columns, number / board.columns);
+    if (!cells.contains(cell)) continue;
+    const Eigen::Vector2i moved = cell - cells.min();
+    piece.corners.push_back(
+        {static_cast<std::size_t>(moved.y() * board.columns + moved.x()), corner.pixel});
+  }
+  return piece;
+}
+
+Eigen::AlignedBox2i cells(int left, int top, int right, int bottom) {
+  return {Eigen::Vector2i(left, top), Eigen::Vector2i(right, bottom)};
+}
+
+// A place on the board that is not known does not matter.
+TEST(Calibrate, FindsAPortExactlyByPiecesInPerfectPhotographs) {
+  auto taken = survey(kPinhole, flat_port(), {.views = 12});
+  for (std::size_t i = 0; i < 12; i += 2) {
+    const auto part = i % 4 == 0 ? cells(3, 1, 8, 4) : cells(2, 2, 4, 5);
+    taken.views[i] = piece_in(taken.views[i], kBoard, part);
+  }
+  const Calibration found =
+      calibrate(kPinhole, rough_flat_port(), taken.views, corners_of(kBoard), unknown(kPlace));
+  EXPECT_EQ(found.pieces(), 6u);
+  EXPECT_TRUE(found.left_out.empty());
+  const auto port = found_port<FlatPort<double>>(found);
+  EXPECT_NEAR(port.distance, 0.025, 1e-7);
+  EXPECT_LT(angle_degrees(port.normal, flat_port().normal), 1e-5);
+}
+
+// Pieces with a skipped row or column, and one whose columns and rows are confused.
+TEST(Calibrate, LeavesOutWrongPieces) {
+  auto taken = survey(kPinhole, flat_port(), {.views = 12, .noise = 0.2});
+  View& skipped = taken.views[2];
+  skipped = piece_in(skipped, kBoard, cells(1, 0, 5, 5));
+  std::erase_if(skipped.corners, [](const Corner& corner) { return corner.number / 9 == 2; });
+  for (Corner& corner : skipped.corners)
+    if (corner.number / 9 > 2) corner.number -= 9;
+  View& sheared = taken.views[5];
+  sheared = piece_in(sheared, kBoard, cells(0, 0, 4, 3));
+  for (Corner& corner : sheared.corners) corner.number += corner.number / 9;
+  View& right = taken.views[7];
+  right = piece_in(right, kBoard, cells(0, 0, 3, 2));
+  const Calibration found =
+      calibrate(kPinhole, rough_flat_port(), taken.views, corners_of(kBoard), unknown(kPlace));
+  ASSERT_EQ(names_of(found.left_out), (std::vector<std::string>{"view2.png", "view5.png"}));
+  EXPECT_EQ(found.left_out[0].reason, "its corners are not a regular piece of the board");
+  EXPECT_EQ(found.pieces(), 1u);
+  EXPECT_NEAR(found_port<FlatPort<double>>(found).distance, 0.025,
+              4 * found.uncertainty.camera_sigmas[0](2));
+}
+
+// A print that is 1 % wider than high. Each piece is first numbered in the wrong way.
+TEST(Calibrate, TurnsPiecesOfSquaresThatAreNotSquare) {
+  const Board board = parse_board("checkerboard:9x6:0.025,0.02475");
+  auto taken = survey(kPinhole, flat_port(), {.views = 14, .noise = 0.1}, board);
+  for (std::size_t i = 0; i < 7; ++i) {
+    View& view = taken.views[i];
+    view = piece_in(view, board, cells(2, 0, 7, 5));
+    view.turned = view.corners;
+    for (Corner& corner : view.corners)
+      corner.number = 9 * (5 - corner.number % 9) + corner.number / 9;
+  }
+  const Calibration found =
+      calibrate(kPinhole, rough_flat_port(), taken.views, corners_of(board), unknown(kPlace));
+  ASSERT_EQ(found.views.size(), 14u);
+  for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(found.views[i].corners[1].number, 1u) << i;
+  EXPECT_NEAR(found_port<FlatPort<double>>(found).distance, 0.025,
+              4 * found.uncertainty.camera_sigmas[0](2));
+  EXPECT_NEAR(found.uncertainty.pixel_sigma, 0.1, 0.01);
+}
+
 // Corners on one line leave the rotation about that line open.
 TEST(Calibrate, ARowOfCornersIsNoBoard) {
   auto taken = survey(kPinhole, flat_port(), {.views = 4});
   taken.views[2].corners.resize(9);
   const Calibration found =
       calibrate(kPinhole, flat_port(), taken.views, corners_of(kBoard), unknown(kPlace));
-  EXPECT_EQ(found.left_out, std::vector<std::string>{"view2.png"});
+  EXPECT_EQ(names_of(found.left_out), std::vector<std::string>{"view2.png"});
 }
 
 }  // namespace

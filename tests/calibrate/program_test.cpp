@@ -54,9 +54,11 @@ class CalibrateHousing : public test::ProgramTest {
     io::write_housing(folder_ / name, housing);
   }
 
-  // `grey_noise`: standard deviation of the pixels' noise, in grey levels of 255.
+  // `grey_noise`: standard deviation of the pixels' noise, in grey levels of 255. `prefix`: of the
+  // photographs' names.
   void take_photographs(const refractive::Port<double>& port, const testing::SurveyOptions& options,
-                        const Board& board = testing::kBoard, double grey_noise = 0) const {
+                        const Board& board = testing::kBoard, double grey_noise = 0,
+                        const std::string& prefix = "") const {
     make_folder(folder_ / "photos");
     const auto taken = testing::survey(kLens, port, options, board);
     cv::RNG random(1);
@@ -66,7 +68,7 @@ class CalibrateHousing : public test::ProgramTest {
       cv::Mat1s noise(image.size());
       random.fill(noise, cv::RNG::NORMAL, 0, grey_noise);
       cv::add(image, noise, image, cv::noArray(), CV_8U);
-      io::write_png(folder_ / "photos" / taken.views[i].image, image);
+      io::write_png(folder_ / "photos" / (prefix + taken.views[i].image), image);
     }
   }
 
@@ -146,6 +148,50 @@ TEST_F(CalibrateHousing, FindsTheCentreOfADome) {
   EXPECT_EQ(std::get<refractive::FlatPort<double>>(side).distance, flat_port().distance);
   const auto port = std::get<refractive::DomePort<double>>(port_in("housing.json"));
   EXPECT_LT((port.centre - dome_port().centre).norm(), 0.0005);
+}
+
+// Expects the numbers of a report within three standard deviations of the truth.
+void expect_within_three_sigmas(const nlohmann::json& report,
+                                const refractive::FlatPort<double>& port) {
+  const Eigen::Vector3d& normal = port.normal;
+  const double truth[] = {std::atan2(normal.x(), normal.z()) / testing::kDegree,
+                          std::atan2(normal.y(), normal.z()) / testing::kDegree,
+                          1e3 * port.distance};
+  ASSERT_EQ(report["free"].size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& number = report["free"][i];
+    EXPECT_NEAR(number["value"].get<double>(), truth[i], 3 * number["sigma"].get<double>())
+        << number["name"];
+  }
+}
+
+// Boards that the borders of the photographs cut, and one of which nearly nothing is left.
+TEST_F(CalibrateHousing, UsesPiecesOfBoards) {
+  take_photographs(flat_port(), with_margin(6), testing::kBoard, 5);
+  testing::SurveyOptions cut{.views = 8, .nearest = 0.17, .farthest = 0.25, .seed = 3};
+  cut.within = {Eigen::Vector2d(-0.3, -0.3), Eigen::Vector2d(1.3, 1.3)};
+  take_photographs(flat_port(), cut, testing::kBoard, 5, "cut-");
+  const auto cover = folder_ / "photos" / "cut-view0.png";
+  cv::Mat3b covered = io::read_photograph(cover).pixels;
+  covered.colRange(60, covered.cols).setTo(cv::Scalar::all(90));
+  io::write_png(cover, covered);
+  const Outcome outcome = run("--housing flat.json -o housing.json --report report.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("cut-view0.png: left out: "));
+  const auto report = io::read_json(folder_ / "report.json");
+  EXPECT_EQ(report["photographs"].size(), 13u);
+  const auto pieces = report["pieces"].get<std::size_t>();
+  EXPECT_GE(pieces, 5u);
+  EXPECT_THAT(outcome.output,
+              HasSubstr(fmt::format("{} photographs show the whole board, {} a piece of the board",
+                                    13 - pieces, pieces)));
+  for (const auto& photograph : report["photographs"])
+    if (photograph["name"].get<std::string>().starts_with("view")) {
+      EXPECT_FALSE(photograph["piece"].get<bool>());
+    }
+  EXPECT_EQ(report["left_out"].size(), 1u);
+  EXPECT_EQ(report["left_out_reasons"].size(), 1u);
+  expect_within_three_sigmas(report, flat_port());
 }
 
 TEST_F(CalibrateHousing, RefusesPhotographsThatDoNotSuffice) {
