@@ -114,6 +114,17 @@ std::vector<std::string> comments_for(const std::vector<std::string>& lines) {
   return comments;
 }
 
+// The standard deviations of the calibrated port: those of the adjusted numbers, and those of the
+// other numbers as `housing` states them.
+io::PortSigmas sigmas_of(const calibrate::Calibration& calibration, const io::Housing& housing,
+                         const std::string& port_name) {
+  pose::Bundle bundle = calibration.bundle.bundle;
+  bundle.cameras[0].stated_sigma =
+      pose::stated_sigma(calibration.bundle.lenses[0], housing, port_name);
+  const auto sigmas = pose::present_sigmas(bundle, calibration.adjust, &calibration.uncertainty);
+  return pose::port_sigmas(*calibration.camera().measured.port, sigmas[0]);
+}
+
 // Writes report and drawing always, since they show what is missing, and the port only if it is
 // precise enough.
 void write(const Options& options, const calibrate::Calibration& calibration, io::Housing housing,
@@ -130,6 +141,7 @@ void write(const Options& options, const calibrate::Calibration& calibration, io
         calibration.last.iterations);
   const refractive::Port<double> port = *calibration.camera().now().port;
   io::check_port(port, "The calibrated port");
+  housing.sigmas[port_name] = sigmas_of(calibration, housing, port_name);
   housing.ports[port_name] = io::to_housing_port(port);
   if (options.calibmar.empty()) return io::write_housing(options.output, housing);
   io::ColmapCamera camera = calibration.bundle.lenses[0];

@@ -24,6 +24,7 @@
 #include "pose/freed_check.h"
 #include "pose/known.h"
 #include "pose/port_kind.h"
+#include "pose/stated_check.h"
 #include "report.h"
 #include "results.h"
 #include "scale_from.h"
@@ -35,6 +36,15 @@ namespace {
 namespace fs = std::filesystem;
 
 using LensesInAir = std::vector<io::ColmapCamera>;
+
+// A model, its lenses in air and its ports.
+struct Input {
+  fs::path folder;  // of the model
+  io::ColmapModel model;
+  LocalFrame frame;  // of the model
+  LensesInAir lenses;
+  io::Housing housing;
+};
 
 // The lenses in air: from the file, or from the model if its cameras carry ports.
 LensesInAir load_lenses(const Options& options, const io::ColmapModel& model) {
@@ -163,7 +173,7 @@ LocalFrame set_known(Options& options, const pose::Bundle& bundle, const LocalFr
       add_known(options.scale_from, options.scale_sigma, options.parsed.common.working_folder,
                 bundle, adjust, unused);
   adjust.poses_known = options.poses == "known";
-  pose::set_free_numbers(options.refine_list, options.sigmas, bundle, adjust, option_of);
+  pose::set_estimated_numbers(options.refine_list, options.sigmas, bundle, adjust, option_of);
   return adjust.positions.empty() ? frame_of_model : enter_local_frame(adjust.positions);
 }
 
@@ -241,10 +251,22 @@ void write_model(const Options& options, const fs::path& folder, const io::Colma
   io::write_colmap_text(folder / "sparse", model);
 }
 
-// Writes all files or none; then the report again with the standard deviations.
-void write(const Options& options, const pose::ColmapBundle& refined, const io::ColmapModel& model,
-           const LocalFrame& frame, const io::Housing& housing, const Results& results) {
-  io::ColmapModel result = to_model(refined, model);
+// Writes the lens and the housing again, with the standard deviations of the results.
+void write_sigmas(const Options& options, const pose::ColmapBundle& refined, const Input& input,
+                  const pose::AdjustOptions& adjusted, const pose::Uncertainty& known) {
+  const auto sigmas = pose::present_sigmas(refined.bundle, adjusted, &known);
+  io::write_housing(options.output / "housing.json", to_housing(refined, input.housing, sigmas));
+  io::write_colmap_cameras(options.output / "sparse" / "cameras.txt",
+                           refined_cameras(refined, sigmas));
+}
+
+// Writes all files or none; then the files with standard deviations again.
+void write(const Options& options, const pose::ColmapBundle& refined, const Input& input,
+           const LocalFrame& frame, const Results& results) {
+  const auto sigmas = pose::present_sigmas(refined.bundle, results.options, nullptr);
+  const io::Housing housing = to_housing(refined, input.housing, sigmas);
+  for (const auto& [name, port] : housing.ports) io::check_port(port, "The refined port " + name);
+  io::ColmapModel result = to_model(refined, input.model, sigmas);
   io::leave(frame, result);
   // With fewer images, the parts of the work take less than a second.
   const bool is_long = refined.bundle.images.size() >= results.options.many_images;
@@ -257,25 +279,22 @@ void write(const Options& options, const pose::ColmapBundle& refined, const io::
       [&] {
         log_info("Refined model in {}", options.output.string());
         result = {};
-        return pose::uncertainty(refined.bundle, results.options, log_if_long);
+        pose::Uncertainty found = pose::uncertainty(refined.bundle, results.options, log_if_long);
+        write_sigmas(options, refined, input, results.options, found);
+        return found;
       });
   for (const std::string& line : uncertainty_lines(results, known)) log_info("{}", line);
+  if (const auto line = scale_warning(results, known)) log_warning("{}", *line);
   if (results.is_other_kind) return;  // numbers of the wrong kind are no cause
+  for (const std::string& line :
+       pose::lines_of_moved_numbers(refined.bundle, refined.ports, results.options))
+    log_warning("{}", line);
   if (const auto freed = pose::number_that_does_not_fit(refined.bundle, results.options))
     log_warning("{}", pose::warning_of(*freed,
                                        results.scale_lost ? std::numeric_limits<double>::infinity()
                                                           : known.scale_sigma,
                                        option_of));
 }
-
-// A model, its lenses in air and its ports.
-struct Input {
-  fs::path folder;  // of the model
-  io::ColmapModel model;
-  LocalFrame frame;  // of the model
-  LensesInAir lenses;
-  io::Housing housing;
-};
 
 Input read_input(const Options& options) {
   Input input;
@@ -369,13 +388,11 @@ void finish(const Options& options, const Input& input, const pose::ColmapBundle
                   unused.lines(),
                   scale_lost};
   for (const std::string& line : error_lines(results)) log_info("{}", line);
-  const io::Housing result = to_housing(refined, input.housing);
-  for (const auto& [name, port] : result.ports) io::check_port(port, "The refined port " + name);
   for (const std::string& line : options.dropped_positions)
     results.unused.push_back("--scale-from: " + line);
   warn(done.report, refined.bundle, options.refine, results.unused);
   results.is_other_kind = warn_of_other_kind(options, done.before);
-  write(options, refined, input.model, frame, result, results);
+  write(options, refined, input, frame, results);
 }
 
 // The kind of port that the photographs fit best, for --housing unknown. `bundle` has usual flat

@@ -81,9 +81,13 @@ void declare_estimate(OptionList& visible, Options& options) {
       .add_with_default("poses", &options.poses,
                         "adjust, or known: the poses are correct and in metres, and are kept; only "
                         "the points and the values of --refine are estimated")
-      .add_with_default("refine", &options.refine_list,
-                        "other values to adjust: any of normal, distance (flat ports), centre "
-                        "(domes), thickness (of the glass), index (of the water), focal");
+      .add_with_default(
+          "refine", &options.refine_list,
+          "values of lens and port to estimate: auto, none, or a list of normal, "
+          "distance (flat ports), centre (domes), thickness (of the glass), index "
+          "(of the water), focal; auto: all but a thickness of unknown accuracy, each "
+          "near its stated value as far as its standard deviation says, and none with "
+          "--poses known");
   pose::declare_sigmas(visible, options.sigmas);
   visible
       .add_with_default("focal-sigma", &options.sigmas.focal,

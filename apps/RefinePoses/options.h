@@ -26,7 +26,7 @@ struct Options {
   std::string scale_from;      // see scale_from.h; empty: refraction alone determines the scale
   double scale_sigma = 0.001;  // standard deviation of the known lengths [m]
   std::vector<std::string> dropped_positions;  // lines of add_known() (scale_from.h)
-  std::string refine_list;                     // `refine` of pose::set_free_numbers()
+  std::string refine_list = "auto";            // `refine` of pose::set_estimated_numbers()
   pose::Sigmas sigmas;
   pose::RefineOptions refine;
 };
@@ -35,7 +35,7 @@ struct Options {
 // `parsed.run` is false if nothing is left to do, for example after --help.
 Options parse_command_line(int argc, const char* const* argv);
 
-// Returns the option that sets `setting`, a setting of pose::set_free_numbers.
+// Returns the option that sets `setting`, a setting of pose::set_estimated_numbers().
 std::string option_of(std::string_view setting);
 
 }  // namespace axial::apps

@@ -19,6 +19,21 @@ std::string doubt(double sigma) {
   return std::isfinite(sigma) ? fmt::format(" +- {:.2g}", sigma) : " (not known)";
 }
 
+// A number with its standard deviation and its unit.
+std::string in_words(double value, const std::string& doubt, const std::string& unit) {
+  return fmt::format("{:.6g}{}{}{}", value, doubt, unit.empty() ? "" : " ", unit);
+}
+
+// The value, its stated value, and what decided.
+std::string in_words(const pose::FreeValue& value) {
+  const std::string found = value.name + " " + in_words(value.now, doubt(value.sigma), value.unit);
+  if (!(value.sigma_before > 0))
+    return fmt::format("{}, before: {}", found, in_words(value.before, "", value.unit));
+  return fmt::format("{}, stated: {}, decided by the {}", found,
+                     in_words(value.before, doubt(value.sigma_before), value.unit),
+                     value.by_photographs() ? "photographs" : "stated value");
+}
+
 double scale_sigma(const Results& results, double sigma) {
   return results.scale_lost ? std::numeric_limits<double>::infinity() : sigma;
 }
@@ -26,6 +41,17 @@ double scale_sigma(const Results& results, double sigma) {
 // JSON has no infinity: null means that nothing determines the number.
 nlohmann::ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+// null: not measured.
+nlohmann::ordered_json positive_or_null(double value) {
+  return value > 0 ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+// What decided about a value; null before standard deviations are computed.
+nlohmann::ordered_json decided_by(const pose::FreeValue& value, bool computed) {
+  if (!computed) return nullptr;
+  return value.by_photographs() ? "photographs" : "stated value";
 }
 
 // The uncertainty before standard deviations are computed: only the noise is known.
@@ -69,8 +95,8 @@ std::vector<std::string> uncertainty_lines(const Results& results, const pose::U
   for (std::size_t i = 0; i < results.bundle.cameras.size(); ++i)
     for (const pose::FreeValue& value :
          pose::free_values(results.bundle.cameras[i], known.camera_sigmas[i], results.options))
-      lines.push_back(fmt::format("Camera {} behind {}: {} {:.6g}{} {}", i + 1, results.ports[i],
-                                  value.name, value.now, doubt(value.sigma), value.unit));
+      lines.push_back(
+          fmt::format("Camera {} behind {}: {}", i + 1, results.ports[i], in_words(value)));
   if (results.options.poses_known) return lines;
   const double scale = scale_sigma(results, known.scale_sigma);
   lines.push_back(
@@ -78,6 +104,22 @@ std::vector<std::string> uncertainty_lines(const Results& results, const pose::U
           ? fmt::format("All lengths are known to {:.3g} % (one standard deviation)", scale * 100)
           : "All lengths are unknown: the model has no scale");
   return lines;
+}
+
+std::optional<std::string> scale_warning(const Results& results, const pose::Uncertainty& known) {
+  constexpr double kLargest = 0.02;
+  const pose::AdjustOptions& options = results.options;
+  if (options.poses_known || results.scale_lost || !options.distances.empty() ||
+      !options.positions.empty() || known.scale_sigma <= kLargest)
+    return {};
+  const std::string known_to =
+      std::isfinite(known.scale_sigma)
+          ? fmt::format("known only to {:.2g} % (one standard deviation)", 100 * known.scale_sigma)
+          : std::string("not known");
+  return fmt::format(
+      "All lengths are {}, because only refraction determines the scale: state a known length or "
+      "positions with --scale-from, or measure the port",
+      known_to);
 }
 
 std::string report_json(const Results& results, const pose::Uncertainty* known) {
@@ -107,7 +149,10 @@ std::string report_json(const Results& results, const pose::Uncertainty* known) 
       camera["free"].push_back({{"name", value.name},
                                 {"unit", value.unit},
                                 {"value", value.now},
-                                {"sigma", finite_or_null(value.sigma)}});
+                                {"sigma", finite_or_null(value.sigma)},
+                                {"before", value.before},
+                                {"sigma_before", positive_or_null(value.sigma_before)},
+                                {"decided_by", decided_by(value, known != nullptr)}});
     json["cameras"].push_back(camera);
   }
   // to_text() replaces bytes that are not UTF-8: such a name must not prevent the report.

@@ -2,6 +2,7 @@
 // Reports the result of a refinement, as lines for the log and as JSON.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,9 +36,13 @@ struct Results {
 // Returns the table of errors as lines for the log.
 std::vector<std::string> error_lines(const Results& results);
 
-// Returns the standard deviations of the free numbers and of lengths as lines for the log. `known`:
-// the standard deviations of the refinement.
+// Returns the free numbers, their stated values, what decided about them, and the standard
+// deviation of lengths as lines for the log. `known`: the standard deviations of the refinement.
 std::vector<std::string> uncertainty_lines(const Results& results, const pose::Uncertainty& known);
+
+// Returns a warning if no length or position is known, poses are adjusted, and lengths are known to
+// more than 2 % or not at all.
+std::optional<std::string> scale_warning(const Results& results, const pose::Uncertainty& known);
 
 // Returns the report as JSON. Numbers that are not known are null. If `known`, the standard
 // deviations of the refinement, is null, all standard deviations are null, and the report says that

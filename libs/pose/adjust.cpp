@@ -5,6 +5,9 @@
 #include <ceres/solver.h>
 #include <glog/logging.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/error.h"
 #include "pose/adjust_problem.h"
 
@@ -18,21 +21,33 @@ namespace {
 // rejects it and damps more.
 constexpr double kLongSteps = 1e9;
 
+// An adjustment has arrived when an iteration changes the cost by less than this part. A smaller
+// part would be the noise of the projections, which are iterations themselves.
+constexpr double kLeastRelativeGain = 1e-8;
+
 // Reports the iterations. Ends the adjustment when an iteration with little damping gains less than
-// `least_gain`. The gain of a strongly damped step tells nothing about the distance to the minimum.
+// `least_gain`, or less than kLeastRelativeGain of the cost. The gain of a strongly damped step
+// tells nothing about the distance to the minimum.
 class Iterations : public ceres::IterationCallback {
  public:
   Iterations(const AdjustSink& sink, double least_gain) : sink_(sink), least_gain_(least_gain) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
     if (sink_) sink_({iteration.iteration, iteration.cost, iteration.iteration_time_in_seconds});
-    const bool done = iteration.iteration > 0 && iteration.step_is_successful &&
-                      iteration.cost_change < least_gain_ &&
-                      iteration.trust_region_radius > kLongSteps / 1000;
-    return done ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    return iteration.iteration > 0 && has_arrived(iteration) ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                                                             : ceres::SOLVER_CONTINUE;
   }
 
  private:
+  bool has_arrived(const ceres::IterationSummary& iteration) const {
+    const double least = std::max(least_gain_, kLeastRelativeGain * iteration.cost);
+    // A step that is rejected although it hardly changes the cost is too short to lower it.
+    if (!iteration.step_is_successful)
+      return iteration.step_is_valid &&
+             std::abs(iteration.cost_change) < kLeastRelativeGain * iteration.cost;
+    return iteration.cost_change < least && iteration.trust_region_radius > kLongSteps / 1000;
+  }
+
   const AdjustSink& sink_;
   double least_gain_;
 };
@@ -61,13 +76,30 @@ ceres::Solver::Options solver_options(AdjustProblem& adjusted, int max_iteration
   return options;
 }
 
+// A point whose observations are all outliers moves by short steps of equal lengths. Such steps may
+// take all iterations, but they hardly change the cost.
+bool has_converged(const ceres::Solver::Summary& summary) {
+  constexpr double kLeastGain = 0.01;  // a step of 0.14 standard deviations
+  return summary.termination_type != ceres::NO_CONVERGENCE ||
+         summary.iterations.back().cost_change < kLeastGain;
+}
+
 }  // namespace
 
 const Unknowns& AdjustOptions::unknowns(const BundleCamera& camera) const {
   const auto& port = camera.measured.port;
-  const bool dome = port && std::holds_alternative<refractive::DomePort<double>>(*port);
+  if (!port) return of_air ? *of_air : *this;
+  const bool dome = std::holds_alternative<refractive::DomePort<double>>(*port);
   if (dome && of_domes) return *of_domes;
   return *this;
+}
+
+double AdjustOptions::sigma_before(const BundleCamera& camera, int number) const {
+  const Unknowns& of_camera = unknowns(camera);
+  const auto k = static_cast<std::size_t>(number);
+  if (of_camera.prior_sigma[k] > 0) return of_camera.prior_sigma[k];
+  const double stated = camera.stated_sigma(number);
+  return stated > 0 ? stated : of_camera.default_sigma[k];
 }
 
 AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSink& sink) {
@@ -82,9 +114,8 @@ AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSi
   ceres::Solve(solver, &adjusted.problem(), &summary);
   if (!summary.IsSolutionUsable()) fail("bundle adjustment: {}", summary.message);
   adjusted.write_back(bundle);
-  return {summary.termination_type == ceres::CONVERGENCE ||
-              summary.termination_type == ceres::USER_SUCCESS,
-          static_cast<int>(summary.iterations.size()), summary.initial_cost, summary.final_cost};
+  return {has_converged(summary), static_cast<int>(summary.iterations.size()), summary.initial_cost,
+          summary.final_cost};
 }
 
 }  // namespace axial::pose

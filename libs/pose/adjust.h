@@ -31,24 +31,30 @@ struct KnownPosition {
 };
 
 // Which numbers of a camera are unknown. housing_change.h lists the numbers by index, with their
-// units. `free`: true if adjust() may change the number. `prior_sigma`: the standard deviation with
-// which the number was measured, in the unit of the number; 0: not measured. It is used for free
-// numbers only.
+// units.
 struct Unknowns {
-  std::array<bool, kHousingNumbers> free{};
+  std::array<bool, kHousingNumbers> free{};  // true: adjust() may change the number
+  // The standard deviations with which the numbers were measured, in the units of the numbers. 0:
+  // BundleCamera::stated_sigma applies, or if that is 0, too, `default_sigma`. If all three are 0,
+  // the number was not measured.
   std::array<double, kHousingNumbers> prior_sigma{};
+  std::array<double, kHousingNumbers> default_sigma{};
 };
 
 // What adjust() knows and what it may change. The members of Unknowns apply to all cameras, with
-// the exception `of_domes`.
+// the exceptions `of_domes` and `of_air`.
 struct AdjustOptions : Unknowns {
-  // The unknowns of cameras behind domes. Empty: the unknowns of this struct apply to them as to
-  // all other cameras. Domes can have unknowns of their own, because the first three numbers of a
-  // dome and of a flat port have different meanings.
-  std::optional<Unknowns> of_domes;
+  // The unknowns of cameras behind domes, and of cameras in air. Empty: the unknowns of this struct
+  // apply to them as to all other cameras. Domes can have unknowns of their own, because the first
+  // three numbers of a dome and of a flat port have different meanings. Cameras in air have only
+  // the focal length.
+  std::optional<Unknowns> of_domes, of_air;
 
   // The unknowns that apply to `camera`.
   const Unknowns& unknowns(const BundleCamera& camera) const;
+  // The standard deviation with which `number` of `camera` was measured (Unknowns). 0: not
+  // measured.
+  double sigma_before(const BundleCamera& camera, int number) const;
 
   // Known lengths and positions enter the cost. adjust() says which poses stay constant.
   std::vector<KnownDistance> distances;
@@ -80,7 +86,8 @@ using AdjustSink = std::function<void(const AdjustIteration&)>;
 
 // How the solver ended.
 struct AdjustReport {
-  bool converged = false;                   // false: it stopped at max_iterations
+  // False: it stopped at max_iterations, and the last one lowered half the cost by 0.01 or more.
+  bool converged = false;
   int iterations = 0;                       // including the evaluation of the start
   double initial_cost = 0, final_cost = 0;  // half the cost of adjust()
 };
@@ -102,6 +109,9 @@ struct AdjustReport {
 // The solver factorises the normal equations with the points eliminated. Its memory and the time of
 // an iteration depend on the pairs of images with common points. AdjustOptions::many_images says
 // how bundles of many images are solved in fewer iterations. `sink` may be empty.
+//
+// A measured distance of a flat port does not become negative, and a measured index of the water not
+// less than that of the air.
 //
 // Throws an Error if a number of a port is free for a camera in air, if a known length, a standard
 // deviation of known values or `pixel_sigma` is not positive, if a known distance names a point
@@ -125,8 +135,9 @@ struct Uncertainty {
   std::vector<HousingChange<double>> camera_sigmas;
   // The relative standard deviation of the scale. It is computed for one length: the distance from
   // the first image with an observation or with a known distance or position to the farthest other
-  // image of this kind. Infinite if there is no such length, or if nothing determines the scale,
-  // for example for cameras in air. 0 if poses are known.
+  // image of this kind. It includes the effect of the errors of measured numbers that are not free
+  // (AdjustOptions::sigma_before). Infinite if there is no such length, or if nothing determines
+  // the scale, for example for cameras in air. 0 if poses are known.
   double scale_sigma = 0;
 };
 

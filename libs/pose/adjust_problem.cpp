@@ -6,6 +6,8 @@
 #include <ceres/manifold.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "base/error.h"
 
@@ -49,14 +51,19 @@ struct MeasuredResidual {
   }
 };
 
+// The least possible change of a number of the port; nothing if there is none.
+std::optional<double> least_value(const refractive::Port<double>& port, int number) {
+  constexpr int kDistance = 2;
+  const auto* const flat = std::get_if<refractive::FlatPort<double>>(&port);
+  if (flat && number == kDistance) return -flat->distance;
+  if (number != kIndexNumber) return {};
+  return std::visit([](const auto& kind) { return kind.n_air - kind.n_water; }, port);
+}
+
 ceres::Problem::Options problem_options(CurrentCameras* cameras) {
   ceres::Problem::Options options;
   options.evaluation_callback = cameras;
   return options;
-}
-
-bool is_known(double sigma) {
-  return sigma > 0;
 }
 
 void check(const Bundle& bundle, const AdjustOptions& options) {
@@ -117,15 +124,21 @@ void AdjustProblem::add_known() {
                                nullptr, image_block(known.image));
   for (std::size_t camera = 0; camera < changes_.size(); ++camera) {
     const Unknowns& unknowns = options_.unknowns(bundle_.cameras[camera]);
-    for (int k = 0; k < kHousingNumbers; ++k) {
-      const auto number = static_cast<std::size_t>(k);
-      if (unknowns.free[number] && is_known(unknowns.prior_sigma[number]))
-        problem_->AddResidualBlock(
-            new ceres::AutoDiffCostFunction<MeasuredResidual, 1, kHousingNumbers>(
-                new MeasuredResidual{k, unknowns.prior_sigma[number]}),
-            nullptr, change_block(camera));
-    }
+    for (int k = 0; k < kHousingNumbers; ++k)
+      if (unknowns.free[static_cast<std::size_t>(k)]) add_measured(camera, k);
   }
+}
+
+void AdjustProblem::add_measured(std::size_t camera, int number) {
+  const double sigma = options_.sigma_before(bundle_.cameras[camera], number);
+  if (!(sigma > 0 && std::isfinite(sigma))) return;
+  problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<MeasuredResidual, 1, kHousingNumbers>(
+                                 new MeasuredResidual{number, sigma}),
+                             nullptr, change_block(camera));
+  const auto& port = bundle_.cameras[camera].measured.port;
+  if (!port) return;
+  if (const std::optional<double> least = least_value(*port, number))
+    problem_->SetParameterLowerBound(change_block(camera), number, *least);
 }
 
 void AdjustProblem::add_known_distance(const KnownDistance& known) {

@@ -56,6 +56,7 @@ class AdjustProblem {
   void add_observations();
   void add_known();
   void add_known_distance(const KnownDistance& known);
+  void add_measured(std::size_t camera, int number);
   void fix_points();
   void fix_poses();
   void fix_what_stays();

@@ -20,6 +20,9 @@ struct BundleCamera {
   HousedCamera measured;  // lens in air and port, as measured before the adjustment
   // The present minus the measured numbers of lens and port (housing_change.h lists them).
   HousingChange<double> change = HousingChange<double>::Zero();
+  // The standard deviations that the files of lens and housing state for the measured numbers, in
+  // the units of `change`. 0: not stated.
+  HousingChange<double> stated_sigma = HousingChange<double>::Zero();
 
   // The camera with the change applied.
   HousedCamera now() const { return with_change(measured, change); }

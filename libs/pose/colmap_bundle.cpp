@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "base/error.h"
 #include "io/colmap/colmap_lens.h"
@@ -29,6 +30,8 @@ const io::ColmapCamera& lens_of(const io::ColmapCamera& camera,
   return *found;
 }
 
+constexpr double kDegree = std::numbers::pi / 180;
+
 // Makes the bundle's cameras: one for each pair of lens and port that occurs.
 class CameraMaker {
  public:
@@ -44,8 +47,9 @@ class CameraMaker {
 
  private:
   void add(const io::ColmapCamera& lens, const std::string& port) {
-    result_.bundle.cameras.push_back(
-        {{io::lens_of(lens), housing_.carried_port(port)}, HousingChange<double>::Zero()});
+    result_.bundle.cameras.push_back({{io::lens_of(lens), housing_.carried_port(port)},
+                                      HousingChange<double>::Zero(),
+                                      stated_sigma(lens, housing_, port)});
     result_.lenses.push_back(lens);
     result_.lenses.back().id = static_cast<std::uint32_t>(result_.lenses.size());
     result_.ports.push_back(port);
@@ -76,6 +80,38 @@ io::ColmapCamera lens_now(const ColmapBundle& bundle, std::size_t camera) {
 }
 
 }  // namespace
+
+HousingChange<double> stated_sigma(const io::ColmapCamera& lens, const io::Housing& housing,
+                                   const std::string& port) {
+  HousingChange<double> sigma = HousingChange<double>::Zero();
+  sigma(kFocalNumber) = lens.focal_sigma.value_or(0);
+  const auto found = housing.sigmas.find(port);
+  if (found == housing.sigmas.end()) return sigma;
+  const io::PortSigmas& stated = found->second;
+  if (stated.normal_degrees) sigma.head<2>() = kDegree * *stated.normal_degrees;
+  if (stated.distance) sigma(2) = *stated.distance;
+  if (stated.centre) sigma.head<3>() = *stated.centre;
+  sigma(kIndexNumber) = stated.index.value_or(0);
+  sigma(kThicknessNumber) = stated.thickness.value_or(0);
+  return sigma;
+}
+
+io::PortSigmas port_sigmas(const refractive::Port<double>& port,
+                           const HousingChange<double>& sigma) {
+  io::PortSigmas stated;
+  const auto positive = [&](int number) {
+    return sigma(number) > 0 ? std::optional(sigma(number)) : std::nullopt;
+  };
+  if (std::holds_alternative<refractive::DomePort<double>>(port)) {
+    if ((sigma.head<3>().array() > 0).all()) stated.centre = sigma.head<3>();
+  } else {
+    if ((sigma.head<2>().array() > 0).all()) stated.normal_degrees = sigma.head<2>() / kDegree;
+    stated.distance = positive(2);
+  }
+  stated.index = positive(kIndexNumber);
+  stated.thickness = positive(kThicknessNumber);
+  return stated;
+}
 
 ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapCamera> lenses,
                        const io::Housing& housing) {
@@ -119,13 +155,25 @@ PortFit port_fit(const io::ColmapModel& model) {
   return {rms(io::housing_of(model.cameras)), rms({})};
 }
 
-io::ColmapModel to_model(const ColmapBundle& refined, const io::ColmapModel& model) {
+std::vector<io::ColmapCamera> refined_cameras(const ColmapBundle& refined,
+                                              std::span<const HousingChange<double>> sigmas) {
+  std::vector<io::ColmapCamera> cameras;
+  for (std::size_t i = 0; i < refined.lenses.size(); ++i) {
+    io::ColmapCamera camera = lens_now(refined, i);
+    camera.port = refined.bundle.cameras[i].now().port;
+    camera.focal_sigma.reset();
+    if (!sigmas.empty() && sigmas[i](kFocalNumber) > 0)
+      camera.focal_sigma = sigmas[i](kFocalNumber);
+    cameras.push_back(std::move(camera));
+  }
+  return cameras;
+}
+
+io::ColmapModel to_model(const ColmapBundle& refined, const io::ColmapModel& model,
+                         std::span<const HousingChange<double>> sigmas) {
   const Bundle& bundle = refined.bundle;
   io::ColmapModel result;
-  for (std::size_t i = 0; i < refined.lenses.size(); ++i) {
-    result.cameras.push_back(lens_now(refined, i));
-    result.cameras[i].port = bundle.cameras[i].now().port;
-  }
+  result.cameras = refined_cameras(refined, sigmas);
   result.images = model.images;
   for (std::size_t i = 0; i < result.images.size(); ++i) {
     result.images[i].pose = bundle.images[i].pose;
@@ -157,7 +205,8 @@ io::ColmapModel to_model(const ColmapBundle& refined, const io::ColmapModel& mod
   return result;
 }
 
-io::Housing to_housing(const ColmapBundle& refined, const io::Housing& measured) {
+io::Housing to_housing(const ColmapBundle& refined, const io::Housing& measured,
+                       std::span<const HousingChange<double>> sigmas) {
   io::Housing housing;
   std::map<std::string, int> uses;
   for (const std::string& port : refined.ports) ++uses[port];
@@ -169,12 +218,33 @@ io::Housing to_housing(const ColmapBundle& refined, const io::Housing& measured)
     const std::string name = own ? fmt::format("{}_{}", port, refined.lenses[i].id) : port;
     housing.ports[name] = io::to_housing_port(*camera.now().port);
     housing.cameras[refined.lenses[i].id] = name;
+    const io::PortSigmas stated =
+        sigmas.empty() ? io::PortSigmas{} : port_sigmas(*camera.now().port, sigmas[i]);
+    if (!stated.empty()) housing.sigmas[name] = stated;
   }
   if (uses.size() == 1 && housing.ports.size() == 1 && measured.images.empty()) {
     housing.default_port = housing.ports.begin()->first;
     housing.cameras.clear();
   }
   return housing;
+}
+
+std::vector<HousingChange<double>> present_sigmas(const Bundle& bundle,
+                                                  const AdjustOptions& options,
+                                                  const Uncertainty* known) {
+  constexpr double kLeast = 1e-12, kLargest = 1;  // that files may state
+  std::vector<HousingChange<double>> sigmas;
+  for (std::size_t i = 0; i < bundle.cameras.size(); ++i) {
+    HousingChange<double> sigma = bundle.cameras[i].stated_sigma;
+    const auto& free = options.unknowns(bundle.cameras[i]).free;
+    for (int k = 0; k < kHousingNumbers; ++k) {
+      if (!free[static_cast<std::size_t>(k)]) continue;
+      const double found = known && k != kIndexNumber ? known->camera_sigmas[i](k) : 0;
+      sigma(k) = found >= kLeast && found <= kLargest ? found : 0;
+    }
+    sigmas.push_back(sigma);
+  }
+  return sigmas;
 }
 
 }  // namespace axial::pose

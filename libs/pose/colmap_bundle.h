@@ -6,7 +6,7 @@
 
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
-#include "pose/bundle.h"
+#include "pose/adjust.h"
 
 namespace axial::pose {
 
@@ -28,6 +28,8 @@ struct ColmapBundle {
 // Throws an Error if a camera of an image has no lens, if the image sizes of a camera and its lens
 // differ, if the model of a lens is not supported, if a port is not defined, or if a camera is
 // behind a water surface.
+//
+// The standard deviations of `lenses` and `housing` become BundleCamera::stated_sigma.
 ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapCamera> lenses,
                        const io::Housing& housing);
 
@@ -46,15 +48,41 @@ PortFit port_fit(const io::ColmapModel& model);
 // observations may have been dropped since, but the images must be the same in the same order. The
 // result has the poses, points, tracks and mean reprojection errors [px] of the bundle. It has one
 // camera for each camera of the bundle, with the present lens in air, the present port and the id
-// of ColmapBundle::lenses. Images without observations are left out.
-io::ColmapModel to_model(const ColmapBundle& bundle, const io::ColmapModel& model);
+// of ColmapBundle::lenses. Images without observations are left out. `sigmas`: the present standard
+// deviations of the numbers of each camera, as in present_sigmas(); empty: none are stated.
+io::ColmapModel to_model(const ColmapBundle& bundle, const io::ColmapModel& model,
+                         std::span<const HousingChange<double>> sigmas = {});
+
+// The cameras of to_model().
+std::vector<io::ColmapCamera> refined_cameras(const ColmapBundle& bundle,
+                                              std::span<const HousingChange<double>> sigmas);
 
 // The present ports of the bundle, as a housing for the camera ids of ColmapBundle::lenses.
 // `measured` is the housing from which the bundle was made. If several cameras share a port, each
 // camera whose numbers have changed gets a port of its own. The name of this port is the old name,
 // an underscore and the camera id. Exception: if all cameras have one and the same port and
 // `measured` has no entries by image, this port becomes the default port, and there are no entries
-// by camera.
-io::Housing to_housing(const ColmapBundle& bundle, const io::Housing& measured);
+// by camera. `sigmas`: as for to_model().
+io::Housing to_housing(const ColmapBundle& bundle, const io::Housing& measured,
+                       std::span<const HousingChange<double>> sigmas = {});
+
+// The standard deviations that `lens`, and `housing` for its port `port`, state, in the units of
+// housing_change.h; 0: not stated.
+HousingChange<double> stated_sigma(const io::ColmapCamera& lens, const io::Housing& housing,
+                                   const std::string& port);
+
+// The standard deviations `sigma`, in the units of housing_change.h, as those of `port` in a
+// housing file. Of the components of a normal or of a centre, all or none are stated.
+io::PortSigmas port_sigmas(const refractive::Port<double>& port,
+                           const HousingChange<double>& sigma);
+
+// The standard deviations that files of the refined cameras state for the numbers of each camera of
+// `bundle`, in the units of housing_change.h; 0: none is stated. Numbers that are not free keep
+// BundleCamera::stated_sigma. Free numbers have the standard deviations of `known`. They have none
+// without `known` (null), or if their standard deviation is above 1. The index of the water, if it
+// is free, has none, because it belongs to the water of one dive and not to the housing.
+std::vector<HousingChange<double>> present_sigmas(const Bundle& bundle,
+                                                  const AdjustOptions& options,
+                                                  const Uncertainty* known);
 
 }  // namespace axial::pose

@@ -38,16 +38,13 @@ bool any_behind(const Bundle& bundle) {
   });
 }
 
-bool all_behind_domes(const Bundle& bundle) {
-  return std::ranges::all_of(bundle.cameras, [](const BundleCamera& camera) {
-    return camera.measured.port && std::holds_alternative<Dome>(*camera.measured.port);
-  });
+bool any_in_air(const Bundle& bundle) {
+  return std::ranges::any_of(bundle.cameras,
+                             [](const BundleCamera& camera) { return !camera.measured.port; });
 }
 
 void check_ports(const std::string& asked, const Words& words, const Bundle& bundle) {
-  const bool in_air = std::ranges::any_of(
-      bundle.cameras, [](const BundleCamera& camera) { return !camera.measured.port; });
-  if (in_air && words.size() > words.count("focal"))
+  if (any_in_air(bundle) && words.size() > words.count("focal"))
     fail("{}: there are images in air, which have no port", asked);
   const bool of_flat = words.contains("normal") || words.contains("distance");
   if (of_flat && !any_behind<Flat>(bundle))
@@ -56,16 +53,35 @@ void check_ports(const std::string& asked, const Words& words, const Bundle& bun
     fail("{}: there is a flat port, which has a normal and a distance instead, and no dome", asked);
 }
 
+// Whether a camera's file states the standard deviation of this number of this kind of port.
+template <class Kind>
+bool any_states(const Bundle& bundle, int number) {
+  return std::ranges::any_of(bundle.cameras, [&](const BundleCamera& camera) {
+    return camera.measured.port && std::holds_alternative<Kind>(*camera.measured.port) &&
+           camera.stated_sigma(number) > 0;
+  });
+}
+
+bool is_distance_measured(const Sigmas& sigmas, const Bundle& bundle) {
+  constexpr int kDistance = 2;
+  return sigmas.distance > 0 || any_states<Flat>(bundle, kDistance);
+}
+
+bool is_thickness_measured(const Sigmas& sigmas, const Bundle& bundle) {
+  return sigmas.thickness > 0 || any_states<Flat>(bundle, kThicknessNumber) ||
+         any_states<Dome>(bundle, kThicknessNumber);
+}
+
 void check_known(const std::string& asked, const Words& words, const Sigmas& sigmas,
-                 const AdjustOptions& adjust, SettingNames name_of) {
+                 const Bundle& bundle, const AdjustOptions& adjust, SettingNames name_of) {
   const bool metric = adjust.points_known || adjust.poses_known || !adjust.distances.empty() ||
                       !adjust.positions.empty();
-  if (words.contains("distance") && !(sigmas.distance > 0) && !metric)
+  if (words.contains("distance") && !is_distance_measured(sigmas, bundle) && !metric)
     fail(
         "{}: the distance needs {}, {} or {}, because the photographs show only its ratio to other "
         "lengths",
         asked, name_of("distance_sigma"), name_of("distances"), name_of("poses_known"));
-  if (words.contains("thickness") && !(sigmas.thickness > 0))
+  if (words.contains("thickness") && !is_thickness_measured(sigmas, bundle))
     fail("{}: the thickness needs {}, because photographs hardly distinguish it from the distance",
          asked, name_of("thickness_sigma"));
 }
@@ -80,8 +96,9 @@ void check_sigma(const Words& words, const std::string& word, double sigma,
     fail("{} {}: {} does not name {}", setting, sigma, refine, word);
 }
 
-void check_sigmas(const Words& words, const Sigmas& sigmas, SettingNames name_of) {
-  const std::string refine = name_of("refine");
+// `refine`: the setting that names or implies the words.
+void check_sigmas(const Words& words, const Sigmas& sigmas, const std::string& refine,
+                  SettingNames name_of) {
   check_sigma(words, "normal", sigmas.normal_degrees, name_of("normal_sigma"), refine);
   check_sigma(words, "distance", sigmas.distance, name_of("distance_sigma"), refine);
   check_sigma(words, "centre", sigmas.centre, name_of("centre_sigma"), refine);
@@ -90,16 +107,80 @@ void check_sigmas(const Words& words, const Sigmas& sigmas, SettingNames name_of
   check_sigma(words, "focal", sigmas.focal, name_of("focal_sigma"), refine);
 }
 
-void set(const Words& words, const std::string& word, double sigma, double scale,
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+// The standard deviations of one group of numbers in different cases.
+struct GroupSigmas {
+  double stated, if_free, if_fixed;
+};
+
+// The standard deviations of all numbers: `stated`, and where nothing is stated, `if_free` for free
+// and `if_fixed` for fixed numbers.
+struct AllSigmas {
+  Sigmas stated, if_free, if_fixed;
+
+  GroupSigmas of(double Sigmas::*group) const {
+    return {stated.*group, if_free.*group, if_fixed.*group};
+  }
+};
+
+// `scale`: factor from the unit of `sigmas` to that of housing_change.h.
+void set(bool free, const GroupSigmas& sigmas, double scale,
          std::initializer_list<std::size_t> numbers, Unknowns& unknowns) {
-  if (!words.contains(word)) return;
   for (const std::size_t number : numbers) {
-    unknowns.free[number] = true;
-    unknowns.prior_sigma[number] = sigma * scale;
+    unknowns.free[number] = free;
+    unknowns.prior_sigma[number] = sigmas.stated * scale;
+    unknowns.default_sigma[number] = (free ? sigmas.if_free : sigmas.if_fixed) * scale;
   }
 }
 
-constexpr double kDegrees = 180 / std::numbers::pi;
+// Sets the unknowns of `adjust` for the cameras of `bundle`.
+void set_unknowns(const Words& words, const AllSigmas& sigmas, const Bundle& bundle,
+                  AdjustOptions& adjust) {
+  Unknowns flat, dome;
+  const auto set_group = [&](const char* word, double Sigmas::*group, double scale,
+                             std::initializer_list<std::size_t> numbers, Unknowns& unknowns) {
+    set(words.contains(word), sigmas.of(group), scale, numbers, unknowns);
+  };
+  set_group("normal", &Sigmas::normal_degrees, 1 / kDegrees, {0, 1}, flat);
+  set_group("distance", &Sigmas::distance, 1, {2}, flat);
+  set_group("centre", &Sigmas::centre, 1, {0, 1, 2}, dome);
+  for (Unknowns* const unknowns : {&flat, &dome}) {
+    set_group("thickness", &Sigmas::thickness, 1, {kThicknessNumber}, *unknowns);
+    set_group("index", &Sigmas::index, 1, {kIndexNumber}, *unknowns);
+    set_group("focal", &Sigmas::focal, 1, {kFocalNumber}, *unknowns);
+  }
+  const bool domes = any_behind<Dome>(bundle), flats = any_behind<Flat>(bundle);
+  static_cast<Unknowns&>(adjust) = flats || !domes ? flat : dome;
+  adjust.of_domes.reset();
+  if (domes && flats) adjust.of_domes = dome;
+  adjust.of_air.reset();
+  if (!any_in_air(bundle)) return;
+  adjust.of_air.emplace();
+  set_group("focal", &Sigmas::focal, 1, {kFocalNumber}, *adjust.of_air);
+}
+
+// All words that apply to the cameras. The thickness is among them if it was measured.
+Words all_words(const Sigmas& sigmas, const Bundle& bundle) {
+  Words words{"focal"};
+  const bool flats = any_behind<Flat>(bundle), domes = any_behind<Dome>(bundle);
+  if (flats || domes) words.insert("index");
+  if (flats) words.insert({"normal", "distance"});
+  if (domes) words.insert("centre");
+  if (is_thickness_measured(sigmas, bundle)) words.insert("thickness");
+  return words;
+}
+
+// The words of a list, after all checks.
+Words listed_words(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
+                   const AdjustOptions& adjust, SettingNames name_of) {
+  const std::string asked = name_of("refine") + " " + refine;
+  const Words words = words_of(refine, asked);
+  check_ports(asked, words, bundle);
+  check_sigmas(words, sigmas, name_of("refine"), name_of);
+  check_known(asked, words, sigmas, bundle, adjust, name_of);
+  return words;
+}
 
 struct PlaceWords {
   const char* operator()(const Flat&) const { return "normal,distance"; }
@@ -135,7 +216,8 @@ std::string place_words(const refractive::Port<double>& port) {
 
 void declare_sigmas(OptionList& list, Sigmas& sigmas) {
   list.add_with_default("normal-sigma", &sigmas.normal_degrees,
-                        "standard deviation of the measured normal [degrees]; 0: not measured")
+                        "standard deviation of the measured normal [degrees]; 0, here and in the "
+                        "options below: not stated")
       .add_with_default("distance-sigma", &sigmas.distance,
                         "standard deviation of the distance [m]")
       .add_with_default("centre-sigma", &sigmas.centre, "standard deviation of a dome's centre [m]")
@@ -146,37 +228,53 @@ void declare_sigmas(OptionList& list, Sigmas& sigmas) {
 
 void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
                       AdjustOptions& adjust, SettingNames name_of) {
-  const std::string asked = name_of("refine") + " " + refine;
-  const Words words = words_of(refine, asked);
-  check_ports(asked, words, bundle);
-  check_sigmas(words, sigmas, name_of);
-  Unknowns flat, dome;
-  set(words, "normal", sigmas.normal_degrees, 1 / kDegrees, {0, 1}, flat);
-  set(words, "distance", sigmas.distance, 1, {2}, flat);
-  set(words, "centre", sigmas.centre, 1, {0, 1, 2}, dome);
-  for (Unknowns* const unknowns : {&flat, &dome}) {
-    set(words, "thickness", sigmas.thickness, 1, {kThicknessNumber}, *unknowns);
-    set(words, "index", sigmas.index, 1, {kIndexNumber}, *unknowns);
-    set(words, "focal", sigmas.focal, 1, {kFocalNumber}, *unknowns);
-  }
-  const bool domes = any_behind<Dome>(bundle), others = !all_behind_domes(bundle);
-  static_cast<Unknowns&>(adjust) = others ? flat : dome;
-  adjust.of_domes.reset();
-  if (domes && others) adjust.of_domes = dome;
-  check_known(asked, words, sigmas, adjust, name_of);
+  const Words words = listed_words(refine, sigmas, bundle, adjust, name_of);
+  set_unknowns(words, {sigmas, {}, {}}, bundle, adjust);
+}
+
+Sigmas ruler_sigmas() {
+  return {.normal_degrees = 3,
+          .distance = 0.005,
+          .centre = 0.005,
+          .thickness = 0.0005,
+          .index = 0.004,
+          .focal = 0.005};
+}
+
+void set_estimated_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
+                           AdjustOptions& adjust, SettingNames name_of) {
+  Sigmas if_fixed = ruler_sigmas();
+  if_fixed.thickness = 0;
+  const bool automatic = refine == "auto";
+  Words words;
+  if (automatic && !adjust.poses_known) words = all_words(sigmas, bundle);
+  if (automatic || refine == "none")
+    check_sigmas(words, sigmas, name_of("refine") + " " + refine, name_of);
+  else
+    words = listed_words(refine, sigmas, bundle, adjust, name_of);
+  set_unknowns(words, {sigmas, automatic ? ruler_sigmas() : Sigmas{}, if_fixed}, bundle, adjust);
 }
 
 std::vector<FreeValue> free_values(const BundleCamera& camera, const HousingChange<double>& sigmas,
                                    const AdjustOptions& options) {
   const HousedCamera now = camera.now();
-  std::vector<FreeValue> values;
+  std::vector<FreeValue> values, measured;
   if (now.port) values = std::visit(ValuesOfPort{}, *now.port);
+  if (now.port) measured = std::visit(ValuesOfPort{}, *camera.measured.port);
   const double factor = std::exp(camera.change(kFocalNumber));
-  values.push_back({kFocalNumber, Quantity::focal, "focal length, factor", "", factor, 0, factor});
+  const FreeValue focal{kFocalNumber, Quantity::focal, "focal length, factor", "", 1, 0, 1, 1, 0};
+  measured.push_back(focal);
+  values.push_back(focal);
+  values.back().now = values.back().scale = factor;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    FreeValue& value = values[i];
+    const auto number = static_cast<int>(value.number);
+    value.sigma = sigmas(number) * value.scale;
+    value.before = measured[i].now;
+    value.sigma_before = options.sigma_before(camera, number) * measured[i].scale;
+  }
   const auto& free = options.unknowns(camera).free;
   std::erase_if(values, [&](const FreeValue& value) { return !free[value.number]; });
-  for (FreeValue& value : values)
-    value.sigma = sigmas(static_cast<Eigen::Index>(value.number)) * value.scale;
   return values;
 }
 

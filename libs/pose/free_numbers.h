@@ -12,8 +12,8 @@
 
 namespace axial::pose {
 
-// The standard deviations with which the free numbers were measured. 0: not measured. Distance and
-// normal are those of a flat port, the centre is that of a dome, for each of its coordinates.
+// The standard deviations with which numbers were measured. 0: not stated. Distance and normal are
+// those of a flat port, the centre is that of a dome, for each of its coordinates.
 struct Sigmas {
   double normal_degrees = 0;                       // for each of its two tilts
   double distance = 0, centre = 0, thickness = 0;  // [m]
@@ -27,11 +27,17 @@ struct Sigmas {
 // itself.
 void declare_sigmas(OptionList& list, Sigmas& sigmas);
 
-// Sets the unknowns of `adjust` (Unknowns and of_domes), whose other members are only read, from
+// The standard deviations of numbers that were measured with a ruler, and of a lens and of water
+// that were not calibrated for the dive: 3 degrees, 5 mm, 0.5 mm for the thickness, 0.004, 0.5 %.
+Sigmas ruler_sigmas();
+
+// Sets the unknowns of `adjust` (Unknowns, of_domes and of_air), whose other members are only read,
+// from
 // `refine`, a comma-separated list of the words normal, distance, centre (or center), thickness,
 // index and focal. An empty list frees no number. `normal` and `distance` apply to flat ports,
 // `centre` applies to domes, and the other words apply to all cameras. The standard deviations of
-// `sigmas` become Unknowns::prior_sigma.
+// `sigmas` become Unknowns::prior_sigma. Where `sigmas` states none, BundleCamera::stated_sigma
+// applies.
 //
 // Throws an Error in these cases:
 // - The list has an unknown word.
@@ -39,9 +45,9 @@ void declare_sigmas(OptionList& list, Sigmas& sigmas);
 //   no dome.
 // - Any word other than `focal` is listed and some cameras are in air.
 // - A standard deviation is negative or not finite, or it is positive and its number is not listed.
-// - `thickness` is listed without a positive standard deviation, because the effects of thickness
-//   and distance look alike.
-// - `distance` is listed without a positive standard deviation, and `adjust` has no known
+// - `thickness` is listed without a standard deviation of any camera, because the effects of
+//   thickness and distance look alike.
+// - `distance` is listed without a standard deviation of any camera, and `adjust` has no known
 //   distances, positions, points or poses, because photographs show only ratios of lengths.
 //
 // Messages name the settings "refine", "normal_sigma", "distance_sigma", "centre_sigma",
@@ -50,6 +56,17 @@ void declare_sigmas(OptionList& list, Sigmas& sigmas);
 // turns a name into the name that the user knows.
 void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
                       AdjustOptions& adjust, SettingNames name_of = own_name);
+
+// The same for measured numbers of which some may be estimated. `refine` is "auto", "none" or a
+// list as above:
+// - "auto" frees all numbers of the cameras, with two exceptions. A thickness is free only if
+//   `sigmas` or a camera states its standard deviation. With known poses no number is free. Where
+//   nobody states a standard deviation, ruler_sigmas() applies.
+// - "none" frees no number, and a list frees the listed numbers. Numbers that stay fixed have the
+//   standard deviations that the cameras state, or those of ruler_sigmas(). Exception: a thickness
+//   counts as exact unless a camera states its standard deviation.
+void set_estimated_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
+                           AdjustOptions& adjust, SettingNames name_of = own_name);
 
 // The words of `refine` (set_free_numbers) that free the place of the port: "normal,distance" for a
 // flat port, "centre" for a dome.
@@ -66,6 +83,12 @@ struct FreeValue {
   std::string name, unit;     // for example "distance" and "mm"; a number without unit: ""
   double now = 0, sigma = 0;  // present value and its standard deviation [unit]
   double scale = 1;           // factor from the unit of housing_change.h to `unit`: 1000 for mm
+  // The measured value and its standard deviation [unit]; 0: not measured.
+  double before = 0, sigma_before = 0;
+
+  // True if the photographs say more about the value than its measurement: `sigma` is less than
+  // half of `sigma_before`, or the value was not measured.
+  bool by_photographs() const { return !(sigma_before > 0) || sigma < sigma_before / 2; }
 };
 
 // The free numbers of `camera` with their present values and their standard deviations, by

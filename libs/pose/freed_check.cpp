@@ -10,14 +10,14 @@
 #include "base/error.h"
 #include "pose/free_numbers.h"
 #include "pose/track_sample.h"
+#include "scene/decompositions.h"
 
 namespace axial::pose {
 namespace {
 
-constexpr SampleLimits kLimits{600, 40, 40, 1};
-constexpr double kLeastDrop = 0.07;
-constexpr double kLeastGain = 0.02;  // [px]
-constexpr double kLeastDeviations = 6;
+constexpr SampleLimits kLimits{2000, 40, 40, 1};
+constexpr double kLeastDeviations = 4;
+constexpr double kLeastEffect = 0.001;
 
 AdjustOptions options_for(const Bundle& part, const AdjustOptions& options) {
   AdjustOptions result;
@@ -81,34 +81,90 @@ FreedNumber moved_most(const Bundle& before, const Bundle& after, const AdjustOp
   return freed;
 }
 
+// Of the candidates, those whose numbers are fixed.
+std::vector<std::vector<std::size_t>> fixed_candidates(const Bundle& part,
+                                                       const AdjustOptions& options) {
+  std::vector<std::vector<std::size_t>> groups = candidates(part);
+  const auto& free = options.unknowns(part.cameras.front()).free;
+  std::erase_if(groups, [&](const std::vector<std::size_t>& group) {
+    return std::ranges::any_of(group, [&](std::size_t number) { return free[number]; });
+  });
+  return groups;
+}
+
+Eigen::Matrix3Xd points_of(const Bundle& part) {
+  Eigen::Matrix3Xd places(3, part.points.size());
+  Eigen::Index column = 0;
+  for (const BundlePoint& point : part.points) places.col(column++) = point.position;
+  return places;
+}
+
+Eigen::Matrix3Xd centres_of(const Bundle& part) {
+  Eigen::Matrix3Xd places(3, part.images.size());
+  Eigen::Index column = 0;
+  for (const BundleImage& image : part.images) places.col(column++) = image.pose.centre;
+  return places;
+}
+
+// The RMS of the movements of the points after the best similarity, by their median distance.
+double effect_on_shape(const Bundle& before, const Bundle& after) {
+  const Eigen::Matrix3Xd from = points_of(after), to = points_of(before);
+  const Similarity fit = best_similarity(from, to);
+  double sum = 0;
+  for (Eigen::Index i = 0; i < from.cols(); ++i)
+    sum += (fit(Eigen::Vector3d(from.col(i))) - to.col(i)).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(from.cols())) / median_distance(before);
+}
+
+// The RMS of the relative changes of the distances between cameras and points, after a change of
+// the scale that keeps the distances between the cameras.
+double effect_on_distances(const Bundle& before, const Bundle& after) {
+  const double scale = best_similarity(centres_of(after), centres_of(before)).scale;
+  double sum = 0;
+  for (const Observation& one : before.observations) {
+    const auto distance = [&](const Bundle& part) {
+      return (part.points[one.point].position - part.images[one.image].pose.centre).norm();
+    };
+    const double change = scale * distance(after) / distance(before) - 1;
+    sum += change * change;
+  }
+  return std::sqrt(sum / static_cast<double>(before.observations.size()));
+}
+
+// Frees the numbers of `group`. `stated`: the part, adjusted with `held`, and its RMS error.
+FreedNumber freed_from(const Bundle& stated, double rms_stated, const AdjustOptions& held,
+                       const std::vector<std::size_t>& group) {
+  AdjustOptions freeing = held;
+  for (const std::size_t number : group) freeing.free[number] = true;
+  Bundle trial = stated;
+  const double found = adjusted_rms(trial, freeing);
+  FreedNumber freed = moved_most(stated, trial, freeing);
+  freed.rms_stated = rms_stated;
+  freed.rms_found = found;
+  const double gain = std::max(0.0, rms_stated * rms_stated - found * found);
+  freed.deviations = std::sqrt(static_cast<double>(stated.observations.size()) * gain) /
+                     observed_pixel_sigma(trial, freeing);
+  freed.effect = std::max(effect_on_shape(stated, trial), effect_on_distances(stated, trial));
+  return freed;
+}
+
 }  // namespace
 
 std::optional<FreedNumber> number_that_does_not_fit(const Bundle& refined,
                                                     const AdjustOptions& options) {
   Bundle part = sample_bundle(refined, kLimits, true);
   if (part.images.size() < 3 || part.points.size() < 20 || !of_one_kind(part)) return {};
+  const auto groups = fixed_candidates(part, options);
+  if (groups.empty()) return {};
   std::optional<FreedNumber> best;
   try {
     const AdjustOptions held = options_for(part, options);
     const double stated = adjusted_rms(part, held);
-    for (const auto& group : candidates(part)) {
-      if (std::ranges::any_of(
-              group, [&](std::size_t k) { return options.unknowns(part.cameras.front()).free[k]; }))
-        continue;
-      AdjustOptions freeing = held;
-      for (const std::size_t number : group) freeing.free[number] = true;
-      Bundle trial = part;
-      const double found = adjusted_rms(trial, freeing);
-      if (found > (1 - kLeastDrop) * stated || found > stated - kLeastGain ||
-          (best && found >= best->rms_found))
-        continue;
-      const double sigma = observed_pixel_sigma(trial, freeing);
-      const auto n = static_cast<double>(part.observations.size());
-      FreedNumber freed = moved_most(part, trial, freeing);
-      freed.rms_stated = stated;
-      freed.rms_found = found;
-      freed.deviations = std::sqrt(n * (stated * stated - found * found)) / sigma;
-      if (freed.deviations > kLeastDeviations) best = freed;
+    for (const auto& group : groups) {
+      const FreedNumber freed = freed_from(part, stated, held, group);
+      if (freed.deviations > kLeastDeviations && freed.effect > kLeastEffect &&
+          (!best || freed.rms_found < best->rms_found))
+        best = freed;
     }
   } catch (const Error&) {
     return {};  // an adjustment fails where a number leaves its valid range
@@ -128,10 +184,10 @@ std::string warning_of(const FreedNumber& freed, double scale_sigma, SettingName
           : std::string();
   return fmt::format(
       "Lens, port and scale do not fit the photographs: with {} at {} (given: {}, {} standard "
-      "deviations away), errors are {:.3f} px instead of {:.3f} px (RMS). {}Measure this value "
-      "again, or adjust it with {}",
+      "deviations away), errors are {:.3f} px instead of {:.3f} px (RMS), and the scene changes by "
+      "{:.2g} % of its distance. {}Measure this value again, or adjust it with {}",
       freed.name, value(freed.found), value(freed.stated), deviations, freed.rms_found,
-      freed.rms_stated, lengths, name_of("refine"));
+      freed.rms_stated, 100 * freed.effect, lengths, name_of("refine"));
 }
 
 std::vector<std::string> dropped_lines(const RefineReport& report, const TrackLimits& limits) {

@@ -20,6 +20,10 @@ struct FreedNumber {
   // About |found - stated| in standard deviations: the square root of the decrease of the sum of
   // squared errors, divided by observed_pixel_sigma() after the adjustment.
   double deviations = 0;
+  // The change of the scene, the larger of two: the RMS of the movements of the points after their
+  // best similarity, divided by their median distance from the cameras, and the RMS of the relative
+  // changes of the distances between cameras and points, at the same distances between cameras.
+  double effect = 0;
 };
 
 // Frees, in turn, the index of the water, the normal and the distance of flat ports or the centre
@@ -29,11 +33,11 @@ struct FreedNumber {
 // freed together. Returns the number with the smallest RMS error after the adjustment. If several
 // numbers were freed together, the result is the number that changed most.
 //
-// A number counts only if adjusting it lowers the RMS error by at least 7 % and by at least 0.02
-// px, and if FreedNumber::deviations is above 6. With these limits, the small errors of a good lens
-// calibration give no result.
+// A number counts only if its change is significant and matters: if FreedNumber::deviations is
+// above 4, and FreedNumber::effect is above 0.001. The RMS error itself does not count. Poses can
+// hide most of a wrong number in it, but not the wrong shape of the scene.
 //
-// Each adjustment uses at most 40 images and 600 points of the refined bundle and runs for at most
+// Each adjustment uses at most 40 images and 2,000 points of the refined bundle and runs for at most
 // 20 iterations. The scale of the model stays nearly constant. A wrong port distance is therefore
 // found only if the scale was given. If refraction alone determined the scale, the scale has
 // already adapted to the wrong distance.

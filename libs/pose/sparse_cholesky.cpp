@@ -60,7 +60,8 @@ struct SparseCholesky::Factor {
     if (common.status < CHOLMOD_OK) fail("CHOLMOD failed with status {}", common.status);
   }
 
-  // The solution of the equations of `system`: CHOLMOD_P multiplies by P, CHOLMOD_L solves with L.
+  // The solution of the equations of `system`: CHOLMOD_A solves with the matrix, CHOLMOD_P
+  // multiplies by P, CHOLMOD_L solves with L.
   Eigen::VectorXd solve(int system, Eigen::VectorXd right) {
     cholmod_dense view = view_of(right);
     cholmod_dense* solution = cholmod_l_solve(system, factor, &view, &common);
@@ -91,6 +92,10 @@ SparseCholesky::~SparseCholesky() = default;
 
 bool SparseCholesky::is_positive_definite() const {
   return factor_->factor->minor == factor_->factor->n;
+}
+
+Eigen::VectorXd SparseCholesky::solve(const Eigen::VectorXd& v) const {
+  return factor_->solve(CHOLMOD_A, v);
 }
 
 double SparseCholesky::inverse_form(const Eigen::VectorXd& v) const {

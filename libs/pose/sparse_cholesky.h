@@ -26,6 +26,9 @@ class SparseCholesky {
   // False if a pivot was not positive.
   bool is_positive_definite() const;
 
+  // A^-1 v. Precondition and errors as for inverse_form().
+  Eigen::VectorXd solve(const Eigen::VectorXd& v) const;
+
   // v^T A^-1 v. Precondition: is_positive_definite(), and v has as many numbers as A has rows.
   // Throws std::bad_alloc if memory runs out.
   double inverse_form(const Eigen::VectorXd& v) const;

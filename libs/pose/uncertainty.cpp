@@ -98,6 +98,11 @@ class Covariance {
     return determined ? variance : kInfinite;
   }
 
+  // The covariance times `direction`. Precondition: variance(direction) is finite.
+  Eigen::VectorXd times(const Eigen::VectorXd& direction) const {
+    return scale_.asDiagonal() * factor_.solve(scale_.asDiagonal() * direction);
+  }
+
  private:
   static constexpr double kDamping = 1e-12;
 
@@ -111,41 +116,74 @@ class Covariance {
   SparseCholesky factor_;
 };
 
-// The normal equations at the solution, and the columns of each parameter block.
+Unknowns& unknowns_for(const BundleCamera& camera, AdjustOptions& options) {
+  const auto& port = camera.measured.port;
+  if (!port) return *options.of_air;
+  return std::holds_alternative<refractive::DomePort<double>>(*port) ? *options.of_domes : options;
+}
+
+// The options with all numbers free whose errors count: the free numbers, and without their
+// measurement the numbers that were measured and stay fixed.
+AdjustOptions with_fixed_numbers(const Bundle& bundle, const AdjustOptions& options) {
+  AdjustOptions all = options;
+  if (options.poses_known) return all;  // the scale is exact
+  if (!all.of_domes) all.of_domes = static_cast<const Unknowns&>(options);
+  if (!all.of_air) all.of_air = static_cast<const Unknowns&>(options);
+  for (const BundleCamera& camera : bundle.cameras) {
+    Unknowns& unknowns = unknowns_for(camera, all);
+    for (int k = camera.measured.port ? 0 : kFocalNumber; k < kHousingNumbers; ++k) {
+      const auto number = static_cast<std::size_t>(k);
+      if (unknowns.free[number] || !(options.sigma_before(camera, k) > 0)) continue;
+      unknowns.free[number] = true;
+      unknowns.prior_sigma[number] = kInfinite;
+    }
+  }
+  return all;
+}
+
+// The normal equations at the solution. Their unknowns are the poses, the free numbers and the
+// points. The numbers that were measured and stay fixed have columns of their own.
 class Normal {
  public:
   Normal(const Bundle& bundle, const AdjustOptions& options,
          const std::function<void(const std::string&)>& progress)
-      : problem_(bundle, options), bundle_(bundle), options_(options) {
+      : all_(with_fixed_numbers(bundle, options)),
+        problem_(bundle, all_),
+        bundle_(bundle),
+        options_(options) {
     std::vector<double*> blocks = problem_.camera_blocks();
+    Eigen::Index columns = 0;
     for (const double* block : blocks) {
-      columns_[block] = camera_columns_;
-      camera_columns_ += problem_.problem().ParameterBlockTangentSize(block);
+      columns_[block] = columns;
+      columns += problem_.problem().ParameterBlockTangentSize(block);
     }
     for (double* block : problem_.point_blocks()) blocks.push_back(block);
-    if (camera_columns_ == 0) return;
+    select_columns(columns);
+    if (unknowns_ == 0) return;
     if (progress) progress("standard deviations: normal equations");
-    const Sparse normal =
-        reduced_normal_matrix(jacobian(problem_.problem(), blocks), camera_columns_);
+    Sparse normal = reduced_normal_matrix(jacobian(problem_.problem(), blocks), columns);
+    if (!fixed_.empty()) {
+      const Sparse chosen = selection(columns);
+      by_fixed_ = chosen.transpose() * Sparse(normal * fixed_columns(columns));
+      normal = chosen.transpose() * Sparse(normal * chosen);
+    }
     covariance_.emplace(normal, [&](double operations) {
       if (progress)
         progress(fmt::format("standard deviations: factorization of {} equations, about {:.0f} s",
-                             camera_columns_, std::ceil(operations / kOperationsPerSecond)));
+                             unknowns_, std::ceil(operations / kOperationsPerSecond)));
     });
   }
 
   HousingChange<double> sigmas_of_camera(std::size_t camera) {
     HousingChange<double> sigmas = HousingChange<double>::Zero();
-    const auto found = columns_.find(problem_.change_block(camera));
-    const bool observed = found != columns_.end();
-    Eigen::Index column = observed ? found->second : 0;
     const auto& free = options_.unknowns(bundle_.cameras[camera]).free;
     for (int k = 0; k < kHousingNumbers; ++k) {
       if (!free[static_cast<std::size_t>(k)]) continue;
+      const auto column = column_of(camera, k);
       sigmas(k) = kInfinite;
-      if (observed)
-        sigmas(k) =
-            std::sqrt(covariance_->variance(Eigen::VectorXd::Unit(camera_columns_, column++)));
+      if (column)
+        sigmas(k) = std::sqrt(
+            covariance_->variance(Eigen::VectorXd::Unit(unknowns_, unknown_of_column_[*column])));
     }
     return sigmas;
   }
@@ -157,10 +195,14 @@ class Normal {
     if (from == to) return kInfinite;
     const Eigen::Vector3d baseline =
         bundle_.images[to].pose.centre - bundle_.images[from].pose.centre;
-    Eigen::VectorXd direction = Eigen::VectorXd::Zero(camera_columns_);
+    Eigen::VectorXd direction = Eigen::VectorXd::Zero(unknowns_);
     add_centre(to, baseline.normalized(), direction);
     add_centre(from, -baseline.normalized(), direction);
-    return std::sqrt(covariance_->variance(direction)) / baseline.norm();
+    double variance = covariance_->variance(direction);
+    // Errors of fixed numbers move the unknowns.
+    if (std::isfinite(variance) && !fixed_.empty())
+      variance += (by_fixed_.transpose() * covariance_->times(direction)).squaredNorm();
+    return std::sqrt(variance) / baseline.norm();
   }
 
  private:
@@ -177,14 +219,69 @@ class Normal {
 
   void add_centre(std::size_t image, const Eigen::Vector3d& along, Eigen::VectorXd& direction) {
     const auto found = columns_.find(problem_.image_block(image));
-    if (found != columns_.end()) direction.segment<3>(found->second + 3) += along;
+    if (found == columns_.end()) return;
+    for (int k = 0; k < 3; ++k)
+      direction(unknown_of_column_[static_cast<std::size_t>(found->second + 3 + k)]) += along(k);
   }
 
+  // The column of a number of a camera; nothing if it has none.
+  std::optional<std::size_t> column_of(std::size_t camera, int number) {
+    const auto& free = all_.unknowns(bundle_.cameras[camera]).free;
+    const auto found = columns_.find(problem_.change_block(camera));
+    if (found == columns_.end() || !free[static_cast<std::size_t>(number)]) return {};
+    return static_cast<std::size_t>(found->second +
+                                    std::count(free.begin(), free.begin() + number, true));
+  }
+
+  // Finds the columns of fixed numbers, and gives the others the numbers of the unknowns.
+  void select_columns(Eigen::Index columns) {
+    unknown_of_column_.assign(static_cast<std::size_t>(columns), 0);
+    for (std::size_t camera = 0; camera < bundle_.cameras.size(); ++camera)
+      for (int k = 0; k < kHousingNumbers; ++k) {
+        const auto column = column_of(camera, k);
+        const BundleCamera& one = bundle_.cameras[camera];
+        if (!column || options_.unknowns(one).free[static_cast<std::size_t>(k)]) continue;
+        fixed_.push_back({static_cast<Eigen::Index>(*column), options_.sigma_before(one, k)});
+        unknown_of_column_[*column] = kFixed;
+      }
+    for (Eigen::Index& unknown : unknown_of_column_)
+      if (unknown != kFixed) unknown = unknowns_++;
+  }
+
+  // The matrix whose product with a matrix of all columns has the columns of the unknowns.
+  Sparse selection(Eigen::Index columns) const {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (std::size_t column = 0; column < unknown_of_column_.size(); ++column)
+      if (const Eigen::Index unknown = unknown_of_column_[column]; unknown != kFixed)
+        entries.emplace_back(static_cast<int>(column), static_cast<int>(unknown), 1.0);
+    Sparse matrix(columns, unknowns_);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    return matrix;
+  }
+
+  // The same for the fixed numbers, each times its standard deviation.
+  Sparse fixed_columns(Eigen::Index columns) const {
+    Sparse matrix(columns, static_cast<Eigen::Index>(fixed_.size()));
+    Eigen::Index next = 0;
+    for (const auto& [column, sigma] : fixed_) matrix.insert(column, next++) = sigma;
+    return matrix;
+  }
+
+  struct FixedNumber {
+    Eigen::Index column;
+    double sigma;  // its standard deviation before the adjustment
+  };
+  static constexpr Eigen::Index kFixed = -1;
+
+  AdjustOptions all_;
   AdjustProblem problem_;
   const Bundle& bundle_;
   const AdjustOptions& options_;
-  std::map<const double*, Eigen::Index> columns_;
-  Eigen::Index camera_columns_ = 0;
+  std::map<const double*, Eigen::Index> columns_;  // first column of each parameter block
+  std::vector<FixedNumber> fixed_;
+  std::vector<Eigen::Index> unknown_of_column_;  // or kFixed
+  Eigen::Index unknowns_ = 0;
+  Sparse by_fixed_;  // normal equations of the unknowns (rows) by the fixed numbers, times sigma
   std::optional<Covariance> covariance_;
 };
 

@@ -113,6 +113,10 @@ TEST_F(CalibrateHousing, FindsAFlatPortInTwentyFiveNoisyPhotographs) {
   ASSERT_EQ(report["free"].size(), 3u);
   EXPECT_EQ(report["free"][2]["name"], "distance");
   EXPECT_NEAR(report["free"][2]["value"].get<double>(), 1e3 * port.distance, 1e-6);
+  const io::PortSigmas sigmas = io::read_housing(folder_ / "housing.json").sigmas.at("front");
+  EXPECT_NEAR(1e3 * sigmas.distance.value(), report["free"][2]["sigma"].get<double>(), 1e-9);
+  EXPECT_NEAR(sigmas.normal_degrees.value().x(), report["free"][0]["sigma"].get<double>(), 1e-9);
+  EXPECT_EQ(sigmas.index, std::nullopt);
   EXPECT_TRUE(report["missing"].empty()) << report["missing"];
   EXPECT_THAT(read_file(folder_ / "coverage.svg"), HasSubstr("3150 corners in 25 photographs"));
 

@@ -125,6 +125,26 @@ TEST(Adjust, OutliersHaveLittleSay) {
   EXPECT_LT(error_with(2), 0.2 * error_with(1e9));
 }
 
+// Outliers move their points by short steps. Once the damping is small, an iteration that hardly
+// changes the cost is the last.
+TEST(Adjust, EndsWhenTheCostStaysTheSame) {
+  Bundle bundle = survey(camera_behind(flat_port()), {.noise = 0.3});
+  for (std::size_t i = 0; i < bundle.observations.size(); i += 7)
+    bundle.observations[i].pixel += Eigen::Vector2d(i % 2 == 0 ? 3 : -4, i % 3 == 0 ? 2 : -3);
+  AdjustOptions options;
+  options.pixel_sigma = 0.3;
+  options.free.fill(true);
+  options.prior_sigma = {0.05, 0.05, 0.005, 0.004, 0.0005, 0.005};
+  std::vector<double> costs;
+  const AdjustReport report = adjust(
+      bundle, options, [&](const AdjustIteration& iteration) { costs.push_back(iteration.cost); });
+  EXPECT_TRUE(report.converged);
+  int unchanged = 0;
+  for (std::size_t i = 8; i < costs.size(); ++i)
+    unchanged += costs[i - 1] - costs[i] < 1e-8 * costs[i] ? 1 : 0;
+  EXPECT_LE(unchanged, 1);
+}
+
 // An image without observations, first or farthest, does not affect the scale's standard deviation.
 TEST(Uncertainty, IsNotMistakenByAnImageWithoutObservations) {
   const Bundle whole = survey(camera_behind(flat_port()), {.noise = 0.5});

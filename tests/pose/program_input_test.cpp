@@ -72,7 +72,7 @@ TEST_F(RefinePoses, TakesNamesWithAnySigns) {
 
 // If two files have a port or a lens, a line names both if they differ, and no line if they agree.
 TEST_F(RefinePoses, SaysWhichOfTwoPortsItTakes) {
-  ASSERT_EQ(run(kInput + "-o out --colmap-underwater 1").exit_code, 0);
+  ASSERT_EQ(run(kInput + "-o out --refine none --colmap-underwater 1").exit_code, 0);
   io::ColmapCamera camera = testing::kLens;
   camera.port = flat_port(2);
   io::write_calibmar(folder_ / "same.yaml", camera);
@@ -155,7 +155,9 @@ TEST_F(RefinePoses, RefusesInOneLineThatNamesTheFault) {
   refuses(kInput + "-o out --refine centre", "there is a flat port");
   refuses(kInput + "-o out --refine distance",
           "needs --distance-sigma, --scale-from or --poses known");
-  refuses(kInput + "-o out --normal-sigma 1", "--refine does not name normal");
+  refuses(kInput + "-o out --refine none --normal-sigma 1", "--refine none does not name normal");
+  refuses(kInput + "-o out --refine index --normal-sigma 1", "--refine does not name normal");
+  refuses(kInput + "-o out --centre-sigma 1", "--refine auto does not name centre");
   refuses(kInput + "-o . ", "is the model that is read");
   refuses(kInput + "-o out --scale-from images:image0.jpg,image1.jpg,inf", "'inf' is not finite");
   refuses(kInput + "-o out --max-error 0", "--max-error 0: must be positive");

@@ -113,19 +113,25 @@ TEST_F(RefinePoses, DoesNotAskForTheHousingWhereImagesHaveFewObservations) {
 
 // The stated index bends all rays by more than poses can compensate.
 TEST_F(RefinePoses, WarnsOfANumberThatDoesNotFitThePhotographs) {
-  const Outcome right = run(kInput + "-o right --scale-from " + baseline());
-  ASSERT_EQ(right.exit_code, 0) << right.output;
-  EXPECT_THAT(right.output, ::testing::Not(::testing::HasSubstr("fit the photographs")));
+  for (const char* refine : {"none", "auto"}) {
+    const Outcome right =
+        run(kInput + "-o right --refine " + refine + " --scale-from " + baseline());
+    ASSERT_EQ(right.exit_code, 0) << right.output;
+    EXPECT_THAT(right.output, ::testing::Not(::testing::HasSubstr("warning")));
+  }
   for (const double n_water : {1.0, 1.5}) {
     io::Housing wrong = testing::housing();
     std::get<refractive::FlatPort<double>>(wrong.ports["main"]).n_water = n_water;
     io::write_housing(folder_ / "wrong.json", wrong);
-    const Outcome outcome =
-        run("-i . --lens lens/cameras.txt --housing wrong.json -o out --scale-from " + baseline());
+    const std::string from = "-i . --lens lens/cameras.txt --housing wrong.json -o out ";
+    const Outcome outcome = run(from + "--refine none --scale-from " + baseline());
     ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
     EXPECT_THAT(outcome.output,
                 ::testing::ContainsRegex("do not fit the photographs: with index of water at .* "
                                          "errors are .* px instead of .* px"));
+    EXPECT_THAT(run(from + "--scale-from " + baseline()).output,
+                ::testing::ContainsRegex("the photographs give index of water .* standard "
+                                         "deviations from the stated .* 0.004"));
   }
 }
 

@@ -18,7 +18,7 @@ using testing::camera_behind;
 using testing::flat_port;
 
 TEST_F(RefinePoses, MakesAModelThatInterfaceColmapReads) {
-  const Outcome outcome = run(kInput + "-o out --scale-from " + baseline());
+  const Outcome outcome = run(kInput + "-o out --refine none --scale-from " + baseline());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   const io::ColmapModel refined = io::read_colmap_model(io::find_colmap_model(folder_ / "out"));
   ASSERT_EQ(refined.cameras.size(), 1u);
@@ -160,6 +160,81 @@ TEST_F(RefinePoses, FindsTheFocalLengthOfADistortingLens) {
   EXPECT_NEAR(report["pixel_sigma"].get<double>(), 0.2, 0.01);  // 1 / sqrt(2 x 4000) is 1 %
   const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
   EXPECT_NEAR(refined.cameras[0].params[0], testing::kLens.params[0], 1);
+}
+
+// A diver's measurements: a tilt of 2 degrees that is not stated, 4 mm of distance, the index of
+// fresh water, and a lens that was focused anew. All are found, and written for the next dive.
+TEST_F(RefinePoses, EstimatesWhatWasMeasuredByRuler) {
+  io::Housing wrong = testing::housing();
+  wrong.ports["main"] = flat_port(0, 0.024);
+  std::get<refractive::FlatPort<double>>(wrong.ports["main"]).n_water = 1.328;
+  io::write_housing(folder_ / "housing.json", wrong);
+  io::ColmapModel lens;
+  lens.cameras = {testing::kLens};
+  for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) lens.cameras[0].params[k] *= 1.005;
+  write("lens", lens);
+  const Outcome outcome = run(kInput + "-o out --scale-from " + baseline());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, ::testing::Not(::testing::HasSubstr("warning")));
+  EXPECT_THAT(outcome.output,
+              ::testing::ContainsRegex("normal to the right [0-9.]+ [+]- [0-9.]+ degrees, stated: "
+                                       "0 [+]- 3 degrees, decided by the photographs"));
+  const auto report = io::read_json(folder_ / "out" / "report.json");
+  const auto& free = report["cameras"][0]["free"];
+  ASSERT_EQ(free.size(), 5u);
+  const std::array<double, 5> truth{2, 0, 20, 1.333, 1 / 1.005};
+  const std::array<double, 5> before{0, 0, 24, 1.328, 1}, ruler{3, 3, 5, 0.004, 0.005};
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const double sigma = free[i]["sigma"].get<double>();
+    EXPECT_NEAR(free[i]["value"].get<double>(), truth[i], 3 * sigma) << free[i]["name"];
+    EXPECT_NEAR(free[i]["before"].get<double>(), before[i], 1e-9);
+    EXPECT_NEAR(free[i]["sigma_before"].get<double>(), ruler[i], 1e-9);
+    EXPECT_EQ(free[i]["decided_by"], 2 * sigma < ruler[i] ? "photographs" : "stated value");
+  }
+  const io::Housing found = io::read_housing(folder_ / "out" / "housing.json");
+  const io::PortSigmas& sigmas = found.sigmas.at("main");
+  EXPECT_NEAR(sigmas.normal_degrees.value().x(), free[0]["sigma"].get<double>(), 1e-9);
+  EXPECT_NEAR(1e3 * sigmas.distance.value(), free[2]["sigma"].get<double>(), 1e-9);
+  EXPECT_EQ(sigmas.index, std::nullopt);  // of the water of this dive
+  const auto lenses = io::read_colmap_cameras(folder_ / "out" / "sparse" / "cameras.txt");
+  EXPECT_NEAR(lenses[0].focal_sigma.value(), free[4]["sigma"].get<double>(), 1e-5);
+}
+
+// The files state smaller standard deviations than a ruler's, and the options have priority.
+TEST_F(RefinePoses, TakesStandardDeviationsFromFilesAndOptions) {
+  io::Housing housing = testing::housing();
+  housing.sigmas["main"] = {.distance = 0.001, .index = 0.0001};
+  io::write_housing(folder_ / "housing.json", housing);
+  io::ColmapModel lens;
+  lens.cameras = {testing::kLens};
+  lens.cameras[0].focal_sigma = 0.0003;
+  write("lens", lens);
+  ASSERT_EQ(run(kInput + "-o out --index-sigma 0.0002 --scale-from " + baseline()).exit_code, 0);
+  const auto report = io::read_json(folder_ / "out" / "report.json");
+  const auto& free = report["cameras"][0]["free"];
+  ASSERT_EQ(free.size(), 5u);
+  EXPECT_NEAR(free[0]["sigma_before"].get<double>(), 3, 1e-9);
+  EXPECT_NEAR(free[2]["sigma_before"].get<double>(), 1, 1e-9);
+  EXPECT_EQ(free[3]["sigma_before"].get<double>(), 0.0002);
+  EXPECT_EQ(free[4]["sigma_before"].get<double>(), 0.0003);
+  // Numbers that stay fixed keep what the files state.
+  ASSERT_EQ(run(kInput + "-o kept --refine none").exit_code, 0);
+  EXPECT_EQ(read_file(folder_ / "kept" / "housing.json"), read_file(folder_ / "housing.json"));
+  EXPECT_EQ(io::read_colmap_cameras(folder_ / "kept" / "sparse" / "cameras.txt").at(0).focal_sigma,
+            0.0003);
+}
+
+// Without a known length, the doubt of the port is in the scale, fixed or not.
+TEST_F(RefinePoses, SaysThatRefractionHardlyTellsTheScale) {
+  for (const char* refine : {"auto", "none"}) {
+    const Outcome outcome = run(kInput + "-o out --refine " + refine);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+    EXPECT_THAT(outcome.output,
+                ::testing::HasSubstr("because only refraction determines the scale"));
+    EXPECT_GT(io::read_json(folder_ / "out" / "report.json")["scale_sigma"].get<double>(), 0.02);
+  }
+  EXPECT_THAT(run(kInput + "-o out --scale-from " + baseline()).output,
+              ::testing::Not(::testing::HasSubstr("only refraction")));
 }
 
 TEST_F(RefinePoses, LeavesKnownPosesAsTheyAre) {

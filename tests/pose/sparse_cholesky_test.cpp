@@ -44,6 +44,7 @@ TEST(SparseCholesky, GivesTheFormOfTheDenseInverse) {
       Eigen::VectorXd v = Eigen::VectorXd::LinSpaced(matrix.rows(), -1, 2);
       v(row) += 1;
       EXPECT_NEAR(factor.inverse_form(v), v.dot(inverse * v), 1e-10 * v.dot(inverse * v));
+      EXPECT_LT((factor.solve(v) - inverse * v).norm(), 1e-10 * (inverse * v).norm());
     }
   }
 }

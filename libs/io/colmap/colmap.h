@@ -112,6 +112,10 @@ void require_no_binary_model(const std::filesystem::path& folder);
 void write_colmap_text(const std::filesystem::path& folder, const ColmapModel& model);
 void write_colmap_binary(const std::filesystem::path& folder, const ColmapModel& model);
 
+// Writes cameras for COLMAP into the text file `file`, as write_colmap_text() does.
+void write_colmap_cameras(const std::filesystem::path& file,
+                          const std::vector<ColmapCamera>& cameras);
+
 // Write a model for COLMAP-Underwater, with the ports of the cameras. Errors as for the writers
 // above, with two differences. The binary writer gives an Error for a camera model that
 // COLMAP-Underwater does not have. The text writer does not check whether the folder holds a binary

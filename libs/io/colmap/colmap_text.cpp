@@ -125,16 +125,16 @@ ColmapPoint3D parse_point(TextLine& line) {
   return point;
 }
 
-std::string cameras_as_text(const ColmapModel& model, Dialect dialect) {
+std::string cameras_as_text(const std::vector<ColmapCamera>& cameras, Dialect dialect) {
   const bool underwater = dialect == Dialect::underwater;
   std::string out = "# Camera list with one line of data per camera:\n";
   out += fmt::format("#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]{}\n",
                      underwater ? ", OPTIONAL[REFRAC_MODEL REFRAC_PARAMS[]]" : "");
-  out += fmt::format("# Number of cameras: {}\n", model.cameras.size());
-  for (const ColmapCamera& camera : model.cameras)
+  out += fmt::format("# Number of cameras: {}\n", cameras.size());
+  for (const ColmapCamera& camera : cameras)
     if (camera.focal_sigma)
       out += fmt::format("# {} {} {}\n", kFocalSigma, camera.id, *camera.focal_sigma);
-  for (const ColmapCamera& camera : model.cameras) {
+  for (const ColmapCamera& camera : cameras) {
     out += fmt::format("{} {} {} {} {}", camera.id, camera.model, camera.width, camera.height,
                        fmt::join(camera.params, " "));
     if (underwater && camera.port)
@@ -230,7 +230,7 @@ std::vector<ColmapPoint3D> read_points_text(const fs::path& path) {
 namespace {
 
 void write_text(const fs::path& folder, const ColmapModel& model, Dialect dialect) {
-  write_atomically(folder / "cameras.txt", cameras_as_text(model, dialect));
+  write_atomically(folder / "cameras.txt", cameras_as_text(model.cameras, dialect));
   write_atomically(folder / "images.txt", images_as_text(model, (folder / "images.txt").string()));
   write_atomically(folder / "points3D.txt", points_as_text(model));
 }
@@ -246,6 +246,10 @@ void require_no_binary_model(const fs::path& folder) {
 void write_colmap_text(const fs::path& folder, const ColmapModel& model) {
   require_no_binary_model(folder);
   write_text(folder, model, Dialect::colmap);
+}
+
+void write_colmap_cameras(const fs::path& file, const std::vector<ColmapCamera>& cameras) {
+  write_atomically(file, cameras_as_text(cameras, Dialect::colmap));
 }
 
 void write_underwater_text(const fs::path& folder, const ColmapModel& model) {
