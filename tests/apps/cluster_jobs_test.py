@@ -9,7 +9,7 @@ import unittest.mock
 from pipeline_folder import InFolder
 from programs import main
 
-from axial_pipeline import cluster, jobs, one_step, reconstruct_options, reconstruct_steps, steps
+from axial_pipeline import cluster, jobs, one_step, ownership, reconstruct_options, reconstruct_steps, steps
 from axial_pipeline.failure import Failure
 
 
@@ -57,12 +57,16 @@ class Jobs(InFolder):
                  "lens_model": "OPENCV",
                  "refine_poses": "", "densify": "", "mesh": "", "refine_mesh": "", "texture": "",
                  "features": "", "matches": "", "poses": "", "keep_all": False, "cameras": [],
+                 "lenses": [str(lens)], "lines": [],
                  "map": "", "compare": "", "page": "",
                  "tiles": 1, "until": "cloud", "without": "",
                  "earlier": "", "truth": "", "programs": "bin", "masks": "", "ignore_mask_label": "", **more}
         with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
             return jobs.Survey({"given": given, "images": images,
                                 "node": {"cpus": 64, "memory_mb": 10**6}}, reconstruct_steps.steps)
+
+    def test_every_step_asks_for_something(self):
+        self.assertEqual(set(ownership.WRITES), set(jobs.NEEDS) - {"plan"})
 
     def test_programs_that_plan_their_memory_keep_to_their_job(self):
         self.assertEqual(one_step.limits_of(["bin/CompareSurveys", "--max-threads=1"], 2, 1000),

@@ -1,166 +1,258 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Photographs of several sizes, turned photographs and photographs at several focal lengths: a camera of
-COLMAP for each group, and its lens and port.
+"""Photographs of several sizes, focal lengths or cameras, and turned photographs: a camera of COLMAP for each
+group, with its lens and port.
 
-The lens in air belongs to the group with its size, of these to the largest one. Photographs of another size
-were made smaller or larger, or turned by a quarter; photographs with another focal length in their Exif
-data were zoomed."""
+A lens in air belongs to the photographs of its size, of these to the largest group. Photographs of another
+size with the same ratio of the sides were made smaller or larger; photographs with the sides in exchange were
+turned by a quarter; photographs with another focal length in their Exif data were zoomed. Photographs of
+another camera need a lens of their own."""
 
 import collections
 import dataclasses
 import json
 import pathlib
 
-from . import files, gps
+from . import files, lenses
 from .failure import Failure
-from .lens import DISTORTIONS, has_one_focal_length, sized_lens
+from .lenses import Lens
 from .photographs import few, refuse_other_sizes
 
 FOLDER = "cameras"
 LENSES, HOUSING = "lenses.txt", "housing.json"
-ASPECT = 0.003  # largest relative difference of the ratio of the sides
-TANGENTIAL = {"OPENCV", "FULL_OPENCV"}  # p1 and p2 are the third and fourth distortion
-UNTURNABLE = {"THIN_PRISM_FISHEYE"}
+SAME_FOCAL = 0.005  # focal lengths of the Exif data that differ by less are the same
+MOST_LEFT_OUT = 0.5  # of the photographs
 
 
 @dataclasses.dataclass(frozen=True)
 class Group:
-    """Photographs of one camera."""
+    """Photographs that are alike."""
     size: tuple          # (width, height) [px]
+    camera: str          # of the Exif data
     focal: float | None  # of the Exif data [mm]
     names: tuple
 
+    def is_told_less_than(self, other):
+        """Whether these photographs may belong to the other group, and state less."""
+        return (self.size == other.size and self.camera in ("", other.camera)
+                and self.focal in (None, other.focal) and self != other)
 
-def groups_of(folder, images):
-    """The Groups of photographs, the largest first. `images`: Image by name (photographs.py)."""
+
+@dataclasses.dataclass
+class Camera:
+    """A camera of COLMAP."""
+    names: list  # of its photographs
+    lens: Lens
+    words: str = ""  # what was done to the lens in air
+    quarters: int = 0  # by which photographs were turned, clockwise
+
+
+def as_json(cameras):
+    return [dataclasses.asdict(camera) for camera in cameras]
+
+
+def from_json(found):
+    return [Camera(**{**one, "lens": Lens(**one["lens"])}) for one in found]
+
+
+def nominal(focals):
+    """A common value for focal lengths that differ little."""
+    found, last = {}, 0
+    for focal in sorted(focals):
+        last = focal if focal > last * (1 + SAME_FOCAL) else last
+        found[focal] = last
+    return {**found, None: None}
+
+
+def groups_of(images):
+    """The Groups of photographs, the largest first. `images`: Image by name (photographs.py). Photographs of
+    unknown size count as those of the usual size, and photographs that state less than others of their size
+    belong to those if these are of one group."""
+    usual = collections.Counter(image.size for image in images.values() if image.size).most_common(1)
+    focals = nominal({image.exif.focal for image in images.values() if image.exif.focal})
     found = collections.defaultdict(list)
     for name, image in images.items():
-        found[(image.size, gps.focal_length(pathlib.Path(folder) / name))].append(name)
-    return [Group(*key, tuple(names)) for key, names in
-            sorted(found.items(), key=lambda one: (-len(one[1]), one[1]))]
+        size = image.size or (usual[0][0] if usual else None)
+        found[size, image.exif.camera, focals[image.exif.focal]].append(name)
+    groups = [Group(*key, tuple(names)) for key, names in found.items()]
+    joined = collections.defaultdict(list)
+    for group in groups:
+        others = [other for other in groups if group.is_told_less_than(other)]
+        joined[others[0] if len(others) == 1 else group] += group.names
+    groups = [dataclasses.replace(group, names=tuple(sorted(names))) for group, names in joined.items()]
+    return sorted(groups, key=lambda group: (-len(group.names), group.names))
 
 
-@dataclasses.dataclass(frozen=True)
-class Lens:
-    model: str
-    size: tuple
-    numbers: tuple  # fx, fy, cx, cy and the distortion
+def same_focal(a, b):
+    return abs(a - b) <= SAME_FOCAL * max(a, b)
 
 
-def scaled(lens, factor, size):
-    """The lens of photographs that were made larger by `factor`."""
-    return Lens(lens.model, size, (*(factor * number for number in lens.numbers[:4]), *lens.numbers[4:]))
+def lens_of(group, groups, found):
+    """The lens of `found` for a group; None if no lens has its size or ratio of sides. Fails if two have."""
+    fitting = [lens for lens in found if lenses.difference(lens, group.size) is not None
+               and (lens.stated_focal is None or group.focal and same_focal(lens.stated_focal, group.focal))]
+    fitting = [lens for lens in fitting if lens.stated_focal] or fitting
+    least = min((lenses.difference(lens, group.size) for lens in fitting), default=None)
+    fitting = [lens for lens in fitting if lenses.difference(lens, group.size) == least]
+    if len(fitting) < 2:
+        return fitting[0] if fitting else None
+    alike = [other for other in groups if (other.camera, other.focal) == (group.camera, group.focal)]
+    own = [lens for lens in fitting if any(lenses.is_whole(lens, other.size) for other in alike)]
+    if len(own) == 1:
+        return own[0]
+    focals = sorted({other.focal for other in groups if other.size == group.size and other.focal})
+    if group.focal and len(focals) == len(fitting):
+        return sorted(fitting, key=lambda lens: lens.parameters[0])[focals.index(group.focal)]
+    raise Failure(f"--lens: {fitting[0].in_words()} and {fitting[1].in_words()} are both for photographs of "
+                  f"{group.size[0]} x {group.size[1]} pixels; state the focal length for which each was calibrated, "
+                  "as in --lens 18mm:lens.txt")
 
 
-def turned(lens):
-    """The lens of photographs that were turned by a quarter, clockwise: the pixel (x, y) of a photograph of
-    height h becomes (h - y, x)."""
-    (width, height), (fx, fy, cx, cy, *rest) = lens.size, lens.numbers
-    if lens.model in TANGENTIAL:
-        rest[2:4] = rest[3], -rest[2]
-    return Lens(lens.model, (height, width), (fy, fx, height - cy, cx, *rest))
+def owner_of(lens, groups):
+    """The one of `groups` for which the lens was calibrated."""
+    return min(groups, key=lambda group: (not lenses.is_whole(lens, group.size), -len(group.names)))
 
 
-def zoomed(lens, factor):
-    fx, fy, *rest = lens.numbers
-    return Lens(lens.model, lens.size, (factor * fx, factor * fy, *rest))
+def camera_of(group, lens, owner):
+    """The Camera of a group, and why there is none, in words. `owner`: the group of `lens`."""
+    if lens is None:
+        return None, f"of {group.size[0]} x {group.size[1]} pixels: no lens has this size or this ratio of the sides"
+    if group.camera and owner.camera and group.camera != owner.camera:
+        return None, f"of another camera, {group.camera}: its lens is missing"
+    how, words = lenses.difference(lens, group.size), []
+    quarters = 1 if how in (lenses.TURNED, lenses.SCALED_AND_TURNED) else 0
+    words += ["turned by a quarter"] if quarters else []
+    words += ["of another size"] if how in (lenses.SCALED, lenses.SCALED_AND_TURNED) else []
+    fitted, focal = lenses.fitted(lens, group.size), lens.stated_focal or owner.focal
+    if group.focal and focal and not same_focal(group.focal, focal):
+        fitted = lenses.zoomed(fitted, group.focal / focal)
+        words.append(f"at {group.focal:.4g} mm instead of {focal:.4g} mm: calibrate a lens for this focal length")
+    return Camera(list(group.names), fitted, " and ".join(words), quarters), ""
 
 
-def lens_of(group, lens, focal):
-    """The lens of a group, and what was done to `lens` in words; None if no lens follows from it. `focal`: of
-    the Exif data of the photographs of `lens` [mm]."""
-    words, ratio = [], (group.size[0] / group.size[1]) / (lens.size[0] / lens.size[1])
-    if abs(ratio - 1) > ASPECT:
-        if lens.model in UNTURNABLE or abs(ratio * (lens.size[0] / lens.size[1]) ** 2 - 1) > ASPECT:
-            return None
-        lens, words = turned(lens), ["turned by a quarter"]
-    if group.size != lens.size:
-        lens = scaled(lens, group.size[0] / lens.size[0], group.size)
-        words.append("of another size")
-    if group.focal and focal and group.focal != focal:
-        lens = zoomed(lens, group.focal / focal)
-        words.append(f"at {group.focal:g} mm instead of {focal:g} mm: calibrate a lens for this focal length")
-    return lens, " and ".join(words)
+def lenses_of(given):
+    """The lenses in the files of --lens."""
+    return [dataclasses.replace(lens, stated_focal=focal)
+            for focal, file in map(lenses.given_as, given.lenses) for lens in lenses.in_file(file)]
 
 
 def of(given, images):
-    """The groups of the photographs of --images with their lenses: (Group, Lens, words). Empty if there is one
-    group, or if the size of a photograph is not known. Fails if there is no lens for a group."""
-    groups = groups_of(given.images, images)
-    if len(groups) < 2 or not all(group.size for group in groups):
-        return []
-    base = read_lens(given)
-    own = next((group for group in groups if base and group.size == base.size), groups[0])
-    found = [(group, *(base and lens_of(group, base, own.focal) or (None, ""))) for group in groups]
-    if any(lens is None for _, lens, _ in found):
-        refuse_other_sizes(given.images, images)
-        raise Failure(f"--lens {given.lens}: has no lens for photographs of several focal lengths")
-    return found
+    """The Cameras of the photographs, and lines about those that are left out, because they have no lens. No
+    Camera if all photographs have the only lens of --lens as it is."""
+    if not any(image.size for image in images.values()):
+        return [], []
+    groups, found = groups_of(images), lenses_of(given)
+    if not found:
+        if len(groups) > 1:
+            refuse_other_sizes(given.images, images)
+            raise Failure(f"--lens {given.lens}: has no lens for photographs of several cameras or focal lengths")
+        return [], []
+    chosen = {group: lens_of(group, groups, found) for group in groups}
+    cameras, left_out = [], []
+    for group, lens in chosen.items():
+        owner = owner_of(lens, [one for one in groups if chosen[one] is lens]) if lens else None
+        camera, reason = camera_of(group, lens, owner)
+        if camera:
+            cameras.append(camera)
+        else:
+            left_out.append((group.names, reason))
+    refuse_if_many(given, left_out, len(images))
+    if len(cameras) == len(found) == len(groups) == 1 and not cameras[0].words:
+        return [], []
+    return cameras, [*(f"warning: {len(names)} photographs are left out ({few(list(names))}): they are {reason}"
+                       for names, reason in left_out),
+                     *(f"warning: no photograph belongs to the lens of {lens.in_words()}"
+                       for lens in found if lens not in chosen.values())]
 
 
-def read_lens(given):
-    """The only lens of --lens. None if it cannot be read here, or if there are several."""
-    try:
-        model, size, numbers = sized_lens(pathlib.Path(given.lens))
-        if has_one_focal_length(model):
-            numbers.insert(0, numbers[0])
-        if len(numbers) != 4 + DISTORTIONS[model]:
-            return None
-        return Lens(model, size, tuple(numbers))
-    except (OSError, ValueError, LookupError, StopIteration):
-        return None
+def refuse_if_many(given, left_out, count):
+    """Fails if half of the photographs have no lens."""
+    missing = sum(len(names) for names, _ in left_out)
+    if missing >= MOST_LEFT_OUT * count:
+        names, reason = left_out[0]
+        raise Failure(f"--lens {', '.join(given.lenses)}: has no lens for {missing} of {count} photographs: "
+                      f"{few(list(names))} {'is' if len(names) == 1 else 'are'} {reason}")
 
 
 def lines_about(cameras):
-    """Lines about groups that differ from the lens."""
-    for group, _, words in cameras:
-        if words:
-            is_zoomed = " mm" in words
-            yield (f"{'warning: ' if is_zoomed else ''}{len(group.names)} photographs are {words} "
-                   f"({few(list(group.names))})")
+    """Lines about photographs that differ from their lens."""
+    for camera in cameras:
+        if camera.words:
+            is_zoomed = " mm" in camera.words
+            yield (f"{'warning: ' if is_zoomed else ''}{len(camera.names)} photographs are {camera.words} "
+                   f"({few(camera.names)})")
 
 
-def line_of(number, lens):
-    model, numbers = lens.model, list(lens.numbers)
-    if has_one_focal_length(model):
-        numbers[:2] = [(numbers[0] + numbers[1]) / 2]
-    return " ".join(map(str, (number, model, *lens.size, *(repr(number) for number in numbers))))
+def lens_lines(cameras, quarters):
+    """The text of a cameras.txt. `quarters`: by which turned photographs were turned."""
+    return lenses.text_of([lenses.turned(one.lens, quarters - one.quarters) if one.quarters else one.lens
+                           for one in cameras])
 
 
-def turned_port(port):
-    """A port in the frame of a photograph that was turned by a quarter, clockwise."""
-    changed = dict(port)
-    for key in ("normal", "center_m"):
-        if key in port:
-            x, y, z = port[key]
-            changed[key] = [-y, x, z]
+def turned_port(port, quarters=1):
+    """A port in the frame of a photograph that was turned by quarters, clockwise."""
+    changed = json.loads(json.dumps(port))
+    sigma = changed.get("sigma", {})
+    for _ in range(quarters % 4):
+        for key in ("normal", "center_m"):
+            if key in changed:
+                x, y, z = changed[key]
+                changed[key] = [-y, x, z]
+        for key in ("normal_degrees", "center_m"):
+            if isinstance(sigma.get(key), list):
+                sigma[key][:2] = sigma[key][1::-1]
     return changed
 
 
-def housing_of(given, cameras):
-    """The housing file with entries for turned cameras. None if the file stays as it is."""
-    width, height = read_lens(given).size
-    is_turned = [(group.size[0] < group.size[1]) != (width < height) for group, _, _ in cameras]
-    housing = files.read_object(pathlib.Path(given.housing))
-    name = housing.get("default")
-    if not any(is_turned) or name not in housing.get("ports", {}) or housing.get("cameras") or housing.get("images"):
+def port_of(name, lens, housing):
+    """The name of the port of a photograph, and the key of the entry that names the photograph, or None."""
+    keys = [key for key in housing.get("images", {}) if name == key or name.endswith(f"/{key}")]
+    key = max(keys, key=len, default=None)
+    if key is not None:
+        return housing["images"][key], key
+    return housing.get("cameras", {}).get(str(lens.number), housing.get("default", "none")), None
+
+
+def housing_of(file, cameras, quarters):
+    """The housing `file` for these cameras, with turned ports for turned photographs. None if the file stays as
+    it is, or if it is of another kind."""
+    housing = files.read_object(pathlib.Path(file))
+    ports = housing.get("ports")
+    if not isinstance(ports, dict) or not any(one.quarters for one in cameras) and not housing.get("cameras"):
         return None
-    housing["ports"][f"{name} turned"] = turned_port(housing["ports"][name])
-    housing["cameras"] = {str(number): f"{name} turned" for number, turn in enumerate(is_turned, 1) if turn}
-    return housing
+    try:
+        by_camera, images = {}, dict(housing.get("images", {}))
+        for number, camera in enumerate(cameras, 1):
+            turn = quarters if camera.quarters else 0
+            port = add_port(ports, port_of("", camera.lens, housing)[0], turn)
+            by_camera.update({str(number): port} if port != housing.get("default") else {})
+            for name in camera.names if turn else ():
+                port, key = port_of(name, camera.lens, housing)
+                if key is not None:
+                    images[name] = add_port(ports, port, turn)
+    except (LookupError, TypeError, ValueError):  # RefinePoses says what is wrong with the file
+        return None
+    return {**housing, "cameras": by_camera, **({"images": images} if images else {})}
 
 
-def write(given, cameras, out):
-    """Writes the lenses, the housing if it differs, and the lists of photographs into `out`/cameras."""
+def add_port(ports, name, quarters):
+    """The name of the port `name`, turned by quarters, in `ports`, where it is added."""
+    if not quarters or name == "none":
+        return name
+    ports[f"{name} turned"] = turned_port(ports[name], quarters)
+    return f"{name} turned"
+
+
+def write(given, out, quarters=1):
+    """Writes the lenses, the housing if it differs, and the lists of photographs into `out`/cameras.
+    `quarters`: by which turned photographs were turned, clockwise."""
     folder = out / FOLDER
     folder.mkdir(exist_ok=True)
-    files.write(folder / LENSES, "".join(f"{line_of(number, lens)}\n"
-                                         for number, (_, lens, _) in enumerate(cameras, 1)))
-    housing = housing_of(given, cameras)
+    files.write(folder / LENSES, lens_lines(given.cameras, quarters))
+    housing = housing_of(given.housing, given.cameras, quarters)
     if housing:
         files.write(folder / HOUSING, json.dumps(housing, indent=1))
-    for number, (group, _, _) in enumerate(cameras, 1):
-        files.write(list_of(out, number), "".join(f"{name}\n" for name in group.names))
+    for number, camera in enumerate(given.cameras, 1):
+        files.write(list_of(out, number), "".join(f"{name}\n" for name in camera.names))
 
 
 def list_of(out, number):
@@ -169,8 +261,9 @@ def list_of(out, number):
 
 
 def lens_file(given, out):
-    return out / FOLDER / LENSES if given.cameras else given.lens
+    return out / FOLDER / LENSES if given.cameras else pathlib.Path(given.lens)
 
 
 def housing_file(given, out):
-    return out / FOLDER / HOUSING if given.cameras and housing_of(given, given.cameras) else given.housing
+    has_own = given.cameras and housing_of(given.housing, given.cameras, 1)
+    return out / FOLDER / HOUSING if has_own else pathlib.Path(given.housing)

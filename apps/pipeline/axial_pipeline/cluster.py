@@ -10,7 +10,7 @@ import shutil
 import signal
 import subprocess
 
-from . import files, jobs
+from . import cameras, files, jobs
 from .failure import Failure
 from .ownership import ORDER
 from .running import die_with, ending
@@ -127,7 +127,8 @@ def run_all(todo, given, out, lock):
     records, node = Records(out / "steps"), largest_node(given)
     forget_what_changed(todo, out)
     forget_damaged_plan(out)
-    config = {"given": vars(given), "folder": os.getcwd(), "images": files.count(given.images),
+    plain = {**vars(given), "cameras": cameras.as_json(given.cameras)}
+    config = {"given": plain, "folder": os.getcwd(), "images": files.count(given.images),
               "node": node}
     files.write(out / jobs.OPTIONS, json.dumps(config))
     run_to_its_end(command(given, out, node), given, out, lock)

@@ -36,8 +36,8 @@ def names(file):
 
 
 class Features:
-    """The features of a photograph: their number, the scale [px] below which a tenth of them lies, and the
-    share of the photograph's cells that hold any."""
+    """The features of a photograph of `size` (width, height) [px]: their number, the scale [px] below which a
+    tenth of them lies, and the share of the photograph's cells that hold any."""
 
     def __init__(self, count, columns, data, size):
         self.count = count
@@ -45,7 +45,7 @@ class Features:
         numbers.frombytes(data or b"")
         scales = sorted(map(self.scale, *(numbers[k::columns] for k in range(2, 6)))) if columns == 6 else []
         self.fine = scales[len(scales) // 10] if scales else 0
-        width, height = size
+        width, height = self.size = size
         cells = {(int(CELLS * x / width), int(CELLS * y / height))
                  for x, y in zip(numbers[0::columns], numbers[1::columns])} if columns else set()
         self.spread = len(cells) / CELLS ** 2

@@ -28,10 +28,12 @@ def take_weak_features(features, command_of, out):
     low, names = out / LOW, out / "weak_features.txt"
     for path in colmap.database_files(low):
         files.clear(path)
-    files.write(names, "".join(f"{name}\n" for name in wanted))
     print(f"    {len(wanted)} of {len(found)} photographs have few features, as in haze or over sand: weaker "
           "ones are taken, too", flush=True)
-    logged(command_of(low, names, WEAK), out / "logs" / "weak-features.log", "features")
+    for number, size in enumerate(sorted({found[name].size for name in wanted}), 1):  # COLMAP skips other sizes
+        files.write(names, "".join(f"{name}\n" for name in wanted if found[name].size == size))
+        end = f"-{number}" if number > 1 else ""
+        logged(command_of(low, names, WEAK), out / "logs" / f"weak-features{end}.log", "features")
     if database.names(low) is not None:
         database.take_features(features, low, set(wanted))
     for path in (*colmap.database_files(low), names):

@@ -12,7 +12,7 @@ import re
 import shlex
 import sys
 
-from . import files
+from . import cameras, files
 from .failure import Failure
 from .option_files import find_option
 from .steps import Step, chain_to
@@ -26,7 +26,7 @@ MOST_CPUS = 16  # of a job
 # What the job of a step asks for at first: megabytes, megabytes an image, minutes, minutes an image.
 # The plan of DensifyPointCloud replaces these numbers for the step "densify".
 NEEDS = {"masks": (2000, 0, 30, 0.05),
-         "features": (8000, 0, 30, 0.1), "matches": (8000, 0, 60, 1), "poses": (4000, 4, 60, 1),
+         "features": (8000, 0, 30, 0.1), "lens": (2000, 0, 30, 0), "matches": (8000, 0, 60, 1), "poses": (4000, 4, 60, 1),
          "refine": (2000, 4, 60, 0.2), "import": (2000, 2, 30, 0.02), "plan": (2000, 2, 30, 0.02),
          "densify": (4000, 0, 60, 0.2), "mesh": (8000, 4, 60, 0.5),
          "refine-mesh": (8000, 4, 60, 1), "texture": (8000, 4, 60, 0.5), "map": (8000, 4, 60, 0.5),
@@ -100,6 +100,7 @@ class Survey:
 
     def __init__(self, config, steps):
         given = argparse.Namespace(**config["given"])
+        given.cameras = cameras.from_json(given.cameras)
         self.out = pathlib.Path(given.output)
         self.steps = list(steps(given, self.out))
         self.names = [step.name for step in self.steps]

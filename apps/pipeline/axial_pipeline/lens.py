@@ -18,13 +18,6 @@ def has_one_focal_length(model):
     return model.startswith(("SIMPLE_", "RADIAL"))
 
 
-def sized_lens(file):
-    """The model's name, (width, height) [px] and the parameters of the only camera of COLMAP's cameras.txt."""
-    lines = [line.split() for line in file.read_text(encoding="utf-8-sig").splitlines()]
-    (_, model, width, height, *numbers), = [words for words in lines if words and not words[0].startswith("#")]
-    return model, (int(width), int(height)), [float(number) for number in numbers]
-
-
 def lens_in_air(file):
     """The camera model's name and its parameters: of the first camera of COLMAP's cameras.txt, or
     of Calibmar's calibration.yaml."""
@@ -47,13 +40,18 @@ def start_under_water(file, model):
         air, numbers = lens_in_air(pathlib.Path(file))
         if has_one_focal_length(air):
             numbers.insert(0, numbers[0])
-        fx, fy, cx, cy = numbers[:4]
-        distortions = DISTORTIONS[model]
+        start = start_of(numbers, model)
     except (OSError, ValueError, LookupError, StopIteration):
         return None
-    focal = [(fx + fy) / 2] if has_one_focal_length(model) else [fx, fy]
-    start = [*(WATER * f for f in focal), cx, cy, *[0] * distortions]
     return ",".join(f"{number:.9g}" for number in start)
+
+
+def start_of(numbers, model):
+    """The parameters of the camera model `model` with the focal lengths times the water's index. `numbers`: fx,
+    fy, cx, cy of a lens, and more."""
+    fx, fy, cx, cy = numbers[:4]
+    focal = [(fx + fy) / 2] if has_one_focal_length(model) else [fx, fy]
+    return [*(WATER * f for f in focal), cx, cy, *[0] * DISTORTIONS[model]]
 
 
 def pinhole_parameters(model):

@@ -14,6 +14,7 @@ import os
 import pathlib
 import struct
 
+from . import exif as exif_data
 from .failure import Failure
 
 LEAST = 2
@@ -43,14 +44,9 @@ def size_of_jpeg(data):
 
 
 def size_of_tiff(data):
-    order = ">" if data[:2] == b"MM" else "<"
-    begin, = struct.unpack_from(f"{order}I", data, 4)
-    count, = struct.unpack_from(f"{order}H", data, begin)
-    found = {}
-    for at in range(begin + 2, begin + 2 + 12 * count, 12):
-        tag, kind = struct.unpack_from(f"{order}HH", data, at)
-        found[tag], = struct.unpack_from(f"{order}{'H' if kind == 3 else 'I'}", data, at + 8)
-    return found[256], found[257]
+    first = exif_data.first_table(data)
+    size = first.value(256), first.value(257)
+    return size if all(isinstance(side, int) for side in size) else None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -58,6 +54,7 @@ class Image:
     """What the beginning and the end of an image file tell."""
     size: tuple = None  # (width, height) [px]; None: not known
     is_whole: bool = True  # whether the end of the image is there
+    exif: exif_data.Exif = exif_data.Exif()
 
 
 def ends_with(data, mark):
@@ -67,11 +64,11 @@ def ends_with(data, mark):
 def image_in(data):
     """The Image in the bytes of a file; None if they are none that COLMAP reads."""
     if data[:3] == b"\xff\xd8\xff":
-        return Image(size_of_jpeg(data), ends_with(data, b"\xff\xd9"))
+        return Image(size_of_jpeg(data), ends_with(data, b"\xff\xd9"), exif_data.exif_in(data))
     if data[:8] == b"\x89PNG\r\n\x1a\n":
-        return Image(struct.unpack_from(">II", data, 16), ends_with(data, b"IEND"))
+        return Image(struct.unpack_from(">II", data, 16), ends_with(data, b"IEND"), exif_data.exif_in(data))
     if data[:4] in (b"II*\0", b"MM\0*"):
-        return Image(size_of_tiff(data))
+        return Image(size_of_tiff(data), exif=exif_data.exif_in(data))
     return Image() if is_webp(data) or data[:8].startswith(OTHER_IMAGES) else None
 
 

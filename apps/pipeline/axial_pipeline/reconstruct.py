@@ -57,13 +57,13 @@ def lines_from(file, lines_of):
                       "it again") from None
 
 
-def report(out, seconds):
-    """The text of report.md. `seconds`: the time of each step."""
+def report(out, seconds, more=()):
+    """The text of report.md. `seconds`: the time of each step. `more`: further lines."""
     lines = ["# Reconstruction", "", *lines_from(out / "refined" / "report.json", lines_of_poses)]
     if "evaluate" in seconds:
         lines += lines_from(out / "evaluation.json", lines_of_accuracy)
     lines += [f"- warning: {line}" for line in still_features.lines_about(out)]
-    lines += [f"- {line}" for line in poses.lines_about(out)]
+    lines += [f"- {line}" for line in [*more, *poses.lines_about(out)]]
     lines += ["", "| step | seconds |", "|---|---|"]
     lines += [f"| {name} | {time} |" for name, time in seconds.items()]
     return "\n".join(lines) + "\n"
@@ -109,7 +109,7 @@ def reconstruct(given):
     with only_run_in(out) as lock:
         seconds = (cluster.run_all(todo, given, out, lock) if given.cluster
                    else run_all(todo, out, ownership.ORDER))
-        files.write(out / "report.md", report(out, seconds))
+        files.write(out / "report.md", report(out, seconds, given.lines))
     for line in still_features.lines_about(out):
         print(f"warning: {line}")
     left_over = ownership.left_over(out, [step.name for step in todo])

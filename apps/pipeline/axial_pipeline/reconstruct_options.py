@@ -6,7 +6,8 @@ import fnmatch
 import os
 import pathlib
 
-from . import cameras, cluster, colmap, database, files, masks, matching, photographs, positions
+from . import (cameras, cluster, colmap, database, files, lenses, masks, matching, photographs,
+               positions)
 from .failure import Failure
 from .option_files import find_option, has_option
 from .ownership import ORDER, WRITES, is_record
@@ -29,9 +30,11 @@ def options(script_folder, description):
     programs = os.environ.get("AXIAL_BIN", str(default_folder(script_folder)))
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--images", required=True, help="folder of the raw underwater photographs")
-    parser.add_argument("--lens", required=True,
+    parser.add_argument("--lens", required=True, action="append", dest="lenses", metavar="LENS",
                         help="the lens as calibrated in air: a COLMAP cameras.txt, or Calibmar's "
-                        "calibration.yaml")
+                        "calibration.yaml. Photographs of several cameras, sizes or focal lengths: several lenses in a "
+                        "file, or this option several times, also as 18mm:FILE for photographs whose Exif data state "
+                        "this focal length (docs/underwater-guide.md)")
     parser.add_argument("--housing", required=True, help="the port (docs/formats.md), or Calibmar's "
                         "calibration.yaml; or flat, dome or unknown: usual numbers, which the photographs correct")
     parser.add_argument("-o", "--output", required=True, help="folder for all output files")
@@ -211,12 +214,24 @@ def is_own_mesh(mesh, out):
                                       for patterns in WRITES.values() for pattern in patterns)
 
 
+def check_lens_files(given):
+    """Makes the paths in --lens absolute. `given.lens` is the first file."""
+    for number, text in enumerate(given.lenses):
+        focal, file = lenses.given_as(text)
+        if not pathlib.Path(file).exists():
+            raise Failure(f"--lens {text}: not found")
+        path = files.resolved("--lens", file)
+        given.lenses[number] = str(path) if focal is None else f"{focal:g}mm:{path}"
+        given.lens = given.lens if number else str(path)
+
+
 def check_paths(given):
     """Checks the files and folders that a run reads, and makes their paths absolute, because the
     programs look up relative paths in different folders."""
     for name, value in vars(given).items():
         photographs.require_utf8(f"--{name.replace('_', '-')}", value)
-    for name in ("images", "lens", "housing", "truth", "earlier", "programs"):
+    check_lens_files(given)
+    for name in ("images", "housing", "truth", "earlier", "programs"):
         path = getattr(given, name)
         if name == "housing" and path in KINDS:
             continue
@@ -252,8 +267,9 @@ def check(given):
     if given.snakemake and not given.cluster:
         raise Failure(f"--snakemake {given.snakemake}: is only for --cluster")
     colmap.check_installed()
-    given.cameras = cameras.of(given, photographs.check(given.images, one_size=False))
-    for line in cameras.lines_about(given.cameras):
+    given.cameras, left_out = cameras.of(given, photographs.check(given.images, one_size=False))
+    given.lines = [*cameras.lines_about(given.cameras), *left_out]
+    for line in given.lines:
         print(f"{given.images}: {line}", flush=True)
     matching.check(given)
     given.output = str(files.resolved("--output", given.output))

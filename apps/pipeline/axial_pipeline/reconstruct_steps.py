@@ -2,8 +2,9 @@
 """The steps of `reconstruct`: their commands, what they make, and what they read."""
 
 import pathlib
+import shlex
 
-from . import cameras, colmap, features, masks, matching, poses, positions, start_lens, still_features
+from . import cameras, colmap, features, lenses, masks, matching, poses, positions, start_lens, still_features, turns
 from .option_files import find_option, has_option, read_by
 from .ownership import WRITES
 from .programs import Programs, words_of
@@ -34,8 +35,9 @@ def look_at_features(given, features_file, command, out):
     """Finds the features of further cameras, adds weak features where there are few, and says how many there
     are, and which are at rest."""
     for number in range(2, len(given.cameras) + 1):
-        logged(features_of_camera(number, command, features_file, out), out / "logs" / f"features-{number}.log",
-               "features")
+        words = [str(word) for word in features_of_camera(number, command, features_file, out)]
+        print(f"    {shlex.join(words)}", flush=True)
+        logged(words, out / "logs" / f"features-{number}.log", "features")
     if not any("peak_threshold" in word for word in words_of("features", given)):
         features.take_weak_features(features_file, lambda file, names, threshold: command(
             file, *colmap.weak_features(names, threshold)), out)
@@ -44,9 +46,13 @@ def look_at_features(given, features_file, command, out):
     still_features.look(features_file, out, out / "logs" / "features.log", is_masked=bool(given.masks))
 
 
+def lens_files(given):
+    return [lenses.given_as(text)[1] for text in given.lenses]
+
+
 def write_cameras(given, out):
     if given.cameras:
-        cameras.write(given, given.cameras, out)
+        cameras.write(given, out)
 
 
 def prepare_matches(given, file, out):
@@ -63,15 +69,18 @@ def colmap_steps(given, out):
         yield Step("masks", masks.command(Programs(given.programs), given, folder), makes=folder,
                    reads=[given.masks, given.images], anew=[folder])
     yield Step("features", features_of_camera(1, command, found, out) if given.cameras else command(found),
-               makes=found, reads=[given.images], before=lambda: write_cameras(given, out),
+               makes=found, reads=[given.images, *(lens_files(given) if given.cameras else [])],
+               # COLMAP would make a further camera for the photographs that a killed command left.
+               before=lambda: write_cameras(given, out), anew=colmap.database_files(found) if given.cameras else [],
                changed=[*colmap.database_files(found), out / still_features.FOUND],
                after=lambda: look_at_features(given, found, command, out))
     if not given.lens_model:
         yield Step("lens", Programs(given.programs).effective_lens(
             cameras.lens_file(given, out), cameras.housing_file(given, out), out / start_lens.FILE),
-                   makes=out / start_lens.FILE, reads=[given.lens, given.housing])
+                   makes=out / start_lens.FILE, reads=[*lens_files(given), given.housing],
+                   before=lambda: write_cameras(given, out))
     yield matching.step(given, found, file, lambda: prepare_matches(given, file, out),
-                        reads=[given.lens] if given.lens_model else [out / start_lens.FILE])
+                        reads=lens_files(given) if given.lens_model else [out / start_lens.FILE])
     refine = None if given.lens_model else False
     yield Step("poses", colmap.mapper(file, given.images, models, refine, more=more), makes=models / "best",
                anew=[models], before=models.mkdir, excuse=colmap.NO_MODEL,
@@ -243,12 +252,14 @@ def steps_without_names_of_files(given, out):
     refined, scene, cloud = out / "refined", out / "scene.mvs", out / "scene_dense.ply"
     known_positions = positions.file_of(given.scale_from)
     yield from colmap_steps(given, out)
-    command = programs.refine_poses(out / "colmap" / "best", cameras.lens_file(given, out),
-                                    cameras.housing_file(given, out), refined,
-                                    *refine_options(given))
+    refine_into = lambda folder: programs.refine_poses(
+        out / "colmap" / "best", cameras.lens_file(given, out), cameras.housing_file(given, out), folder,
+        *refine_options(given))
+    command = refine_into(refined)
     yield Step("refine", command, makes=Report(refined / "report.json"),
-               reads=[given.lens, given.housing, *([known_positions] if known_positions else []),
-                      *reads_of("refine-poses", command, given)])
+               reads=[*lens_files(given), given.housing, *([known_positions] if known_positions else []),
+                      *reads_of("refine-poses", command, given)],
+               before=lambda: turns.choose(given, out, refine_into) if given.cameras else None)
     if "densify" not in wanted_steps(given):
         return
     command = programs.import_scene(refined, given.images, scene, refined / "housing.json")

@@ -9,6 +9,7 @@ import re
 from . import files, jobs
 from .steps import Records, chain_to, digest, read_record
 
+FOUND = ("lenses", "cameras", "lines")  # what the first checks add to the options
 # The jobs of which `reconstruct --cluster` makes a step.
 PARTS = {"densify": ("plan", "depth-*", "densify-tile-*"), "mesh": ("mesh-tile-*",)}
 
@@ -51,6 +52,8 @@ def entry_of(step, todo, out):
 def write_run(path, given, todo, out):
     """Writes the file `path` about the steps `todo`, which are done, of a run in the folder `out`.
     `given`: the options of `reconstruct`."""
-    options = [f"--{name.replace('_', '-')}={value}" for name, value in vars(given).items() if value]
+    found = {**vars(given), "lens": vars(given).get("lenses")}
+    options = [f"--{name.replace('_', '-')}={one}" for name, value in found.items()
+               if value and name not in FOUND for one in (value if isinstance(value, list) else [value])]
     steps = [entry_of(step, todo, out) for step in todo]
     files.write(path, json.dumps({"command": ["reconstruct", *options], "steps": steps}, indent=1))

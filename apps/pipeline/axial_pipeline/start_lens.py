@@ -31,6 +31,9 @@ def set_in(file, given, out):
     if not given.lens_model:
         lenses = read(out / FILE)
         return database.set_lenses(file, lambda *camera: lens_for(lenses, *camera))
+    if given.cameras:
+        starts = [lens.start_of(one.lens.parameters, given.lens_model) for one in given.cameras]
+        return database.set_lenses(file, lambda number, *_: (given.lens_model, starts[number - 1]))
     start = lens.start_under_water(given.lens, given.lens_model)
     if start:
         parameters = [float(number) for number in start.split(",")]
