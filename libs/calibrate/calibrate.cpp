@@ -15,12 +15,17 @@ namespace {
 constexpr std::size_t kMinCorners = 8;  // of a photograph
 constexpr std::size_t kMinViews = 3;    // photographs
 
-void require_views(std::size_t count) {
-  if (count < kMinViews)
-    fail(
-        "{} photographs show {} or more corners of the board, at least {} are needed; 20 are "
-        "better, with the board near each edge of the image, tilted, near and far",
-        count, kMinCorners, kMinViews);
+// Error if fewer than the necessary photographs show the board. The message gives one example of
+// `left_out`.
+void require_views(std::size_t count, std::span<const LeftOut> left_out) {
+  if (count >= kMinViews) return;
+  std::string said = fmt::format(
+      "{} photographs show {} or more corners of the board, at least {} are needed; 20 are better, "
+      "with the board near each edge of the image, tilted, near and far",
+      count, kMinCorners, kMinViews);
+  if (!left_out.empty())
+    said += fmt::format("; {}: {}", left_out.front().image, left_out.front().reason);
+  throw Error(said);
 }
 
 // Error if fewer than the necessary photographs are left. `what`: the verb phrase of the message.
@@ -131,7 +136,7 @@ Calibration calibrate_numbered(const io::ColmapCamera& lens, const refractive::P
     else
       calibration.left_out.push_back({view.image, why_too_few(view)});
   }
-  require_views(calibration.views.size());
+  require_views(calibration.views.size(), calibration.left_out);
   calibration.bundle = board_bundle(lens, port, calibration.views, corners);
   const std::size_t shown = calibration.views.size();
   place_boards(calibration.bundle.bundle);

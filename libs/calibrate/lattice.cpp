@@ -115,9 +115,12 @@ class Lattice {
       : linker_(linker), saddles_(saddles), taken_(taken) {
     const Eigen::Vector2d x = saddles[first].edges[0], y = saddles[first].edges[1];
     add({0, 0}, {first, 0, {x, cross(x, y) > 0 ? y : Eigen::Vector2d(-y)}});
-    for (std::size_t done = 0; done < order_.size(); ++done)
+    std::size_t done = 0;
+    while (done < order_.size()) {  // grow() adds to the order
+      const Cell cell = order_[done++];
       for (std::size_t axis = 0; axis < 2; ++axis)
-        for (const int sign : {-1, 1}) grow(order_[done], axis, sign);
+        for (const int sign : {-1, 1}) grow(cell, axis, sign);
+    }
   }
 
   // The corners of complete cells.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibrate/calibrate.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "calibrate/board_survey.h"
@@ -15,6 +16,7 @@ using refractive::FlatPort;
 using testing::angle_degrees;
 using testing::dome_port;
 using testing::flat_port;
+using ::testing::HasSubstr;
 using testing::kBoard;
 using testing::kDistorting;
 using testing::kPinhole;
@@ -202,11 +204,11 @@ TEST(Calibrate, LeavesOutWhatDoesNotFit) {
 TEST(Calibrate, RefusesTooFewPhotographs) {
   auto taken = survey(kPinhole, flat_port(), {.views = 3});
   taken.views[1].corners.clear();
+  taken.views[1].fault = "no checkerboard is found";
   const std::string error = test::error_of(
       [&] { calibrate(kPinhole, flat_port(), taken.views, corners_of(kBoard), unknown(kPlace)); });
-  EXPECT_NE(error.find("2 photographs show 8 or more corners of the board, at least 3"),
-            std::string::npos)
-      << error;
+  EXPECT_THAT(error, HasSubstr("2 photographs show 8 or more corners of the board, at least 3"));
+  EXPECT_THAT(error, HasSubstr("near and far; view1.png: no checkerboard is found"));
 }
 
 // Directions beyond the fold of a lens model have no image.

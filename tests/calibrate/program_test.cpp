@@ -179,7 +179,8 @@ TEST_F(CalibrateHousing, UsesPiecesOfBoards) {
   cv::Mat3b covered = io::read_photograph(cover).pixels;
   covered.colRange(60, covered.cols).setTo(cv::Scalar::all(90));
   io::write_png(cover, covered);
-  const Outcome outcome = run("--housing flat.json -o housing.json --report report.json");
+  const Outcome outcome =
+      run("--housing flat.json -o housing.json --report report.json --coverage coverage.svg");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_THAT(outcome.output, HasSubstr("cut-view0.png: left out: "));
   const auto report = io::read_json(folder_ / "report.json");
@@ -189,6 +190,8 @@ TEST_F(CalibrateHousing, UsesPiecesOfBoards) {
   EXPECT_THAT(outcome.output,
               HasSubstr(fmt::format("{} photographs show the whole board, {} a piece of the board",
                                     13 - pieces, pieces)));
+  EXPECT_THAT(read_file(folder_ / "coverage.svg"),
+              HasSubstr(fmt::format("in 13 photographs ({} of a piece)", pieces)));
   for (const auto& photograph : report["photographs"])
     if (photograph["name"].get<std::string>().starts_with("view")) {
       EXPECT_FALSE(photograph["piece"].get<bool>());
