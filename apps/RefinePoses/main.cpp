@@ -25,6 +25,7 @@
 #include "pose/known.h"
 #include "pose/port_kind.h"
 #include "pose/stated_check.h"
+#include "position_lines.h"
 #include "report.h"
 #include "results.h"
 #include "scale_from.h"
@@ -228,6 +229,11 @@ void warn(const pose::RefineReport& report, const pose::Bundle& bundle,
                      bundle.images[options.adjust.positions[position].image].name);
     log_warning("{} is not used, because this image is left out", unused.back());
   }
+  for (const std::string& line : report.wrong_positions) {
+    unused.push_back("--scale-from: " + line);
+    log_warning("{}", unused.back());
+  }
+  for (const std::string& line : position_warnings(report)) log_warning("{}", line);
   if (report.repeated > 0)
     log_info(
         "{} observations are ignored, because another observation in the same image belongs to the "
@@ -388,6 +394,7 @@ void finish(const Options& options, const Input& input, const pose::ColmapBundle
                   unused.lines(),
                   scale_lost};
   for (const std::string& line : error_lines(results)) log_info("{}", line);
+  for (const std::string& line : position_lines(done.report)) log_info("{}", line);
   for (const std::string& line : options.dropped_positions)
     results.unused.push_back("--scale-from: " + line);
   warn(done.report, refined.bundle, options.refine, results.unused);
@@ -437,6 +444,7 @@ int run(int argc, char** argv) {
   check_output(options, input.folder);
   say_input(input, refined);
   const Refined done = refine_or_without_scale(options, refined, input, unused, frame);
+  options.refine.adjust.positions = done.report.positions;
   finish(options, input, refined, done, unused, frame);
   return 0;
 }

@@ -33,8 +33,8 @@ void check(const Options& options) {
   if (!options.effective_lens.empty()) return check_effective_lens(options);
   if (given(options.parsed, "scene-distance"))
     fail("--scene-distance {}: is for --effective-lens", options.scene_distance);
-  if (!(options.scale_sigma > 0 && std::isfinite(options.scale_sigma)))
-    fail("--scale-sigma {}: must be positive", options.scale_sigma);
+  if (!(options.scale_sigma.metres > 0 && std::isfinite(options.scale_sigma.metres)))
+    fail("--scale-sigma {}: must be positive", options.scale_sigma.metres);
   if (!(options.refine.tracks.max_error > 0))
     fail("--max-error {}: must be positive", options.refine.tracks.max_error);
   const double min_angle = options.refine.tracks.min_angle;
@@ -45,9 +45,9 @@ void check(const Options& options) {
   if (options.poses == "known" && !options.scale_from.empty())
     fail("--scale-from {}: contradicts --poses known, which means that the model is in metres",
          options.scale_from);
-  if (options.scale_from.empty() && given(options.parsed, "scale-sigma"))
+  if (options.scale_from.empty() && options.scale_sigma.given)
     fail("--scale-sigma {}: is the standard deviation of --scale-from, which is missing",
-         options.scale_sigma);
+         options.scale_sigma.metres);
   if (options.output.empty()) fail("--output-folder is missing");
 }
 
@@ -97,8 +97,10 @@ void declare_estimate(OptionList& visible, Options& options) {
            "double quotes) or points:ID,ID,METRES or positions:FILE with a line NAME X Y Z for "
            "each image (names may contain blanks), or a file of Metashape, Pix4D, OpenDroneMap or "
            "a spreadsheet; without it, only refraction determines the scale, with low precision")
-      .add_with_default("scale-sigma", &options.scale_sigma,
-                        "standard deviation of the lengths or positions of --scale-from [m]")
+      .add_with_default("scale-sigma", &options.scale_sigma.metres,
+                        "standard deviation of the lengths or positions of --scale-from [m]; "
+                        "without this option, that of positions is estimated from their distances "
+                        "to the cameras, unless their file states it")
       .add_with_default("max-error", &options.refine.tracks.max_error,
                         "observations with larger errors are dropped [px]")
       .add_with_default(
@@ -151,6 +153,7 @@ Options parse_command_line(int argc, const char* const* argv) {
       texts.effective_lens.empty()
           ? std::filesystem::path()
           : output_in_working_folder(common, texts.effective_lens, "--effective-lens");
+  options.scale_sigma.given = given(options.parsed, "scale-sigma");
   check(options);
   return options;
 }

@@ -8,6 +8,7 @@
 #include "base/program.h"
 #include "pose/free_numbers.h"
 #include "pose/refine.h"
+#include "scale_from.h"
 
 namespace axial::apps {
 
@@ -23,8 +24,8 @@ struct Options {
   bool underwater = false;               // also write the model for COLMAP-Underwater
   std::string poses = "adjust";          // "adjust" or "known"
   bool allow_missing = false;            // no error if the known scale cannot be used
-  std::string scale_from;      // see scale_from.h; empty: refraction alone determines the scale
-  double scale_sigma = 0.001;  // standard deviation of the known lengths [m]
+  std::string scale_from;  // see scale_from.h; empty: refraction alone determines the scale
+  ScaleSigma scale_sigma;
   std::vector<std::string> dropped_positions;  // lines of add_known() (scale_from.h)
   std::string refine_list = "auto";            // `refine` of pose::set_estimated_numbers()
   pose::Sigmas sigmas;

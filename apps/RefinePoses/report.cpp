@@ -9,6 +9,7 @@
 
 #include "io/bytes/json.h"
 #include "pose/free_numbers.h"
+#include "position_lines.h"
 
 namespace axial::apps {
 namespace {
@@ -136,6 +137,8 @@ std::string report_json(const Results& results, const pose::Uncertainty* known) 
             {"points_after", report.points_after}};
   json["scale_sigma"] = finite_or_null(scale_sigma(results, uncertainty.scale_sigma));
   if (!known) json["standard_deviations"] = "missing";
+  if (Json positions = positions_json(report); !positions.is_null())
+    json["positions"] = std::move(positions);
   if (!results.unused.empty()) json["unused"] = results.unused;
   for (const ImageErrors& image : results.images)
     json["images"].push_back({{"name", image.name},

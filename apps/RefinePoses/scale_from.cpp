@@ -161,7 +161,7 @@ std::vector<std::string> drop_outliers(io::ImagePositions& positions, const pose
 
 // A survey's list may name photographs that COLMAP found no pose for: skips them with a warning.
 // Returns the lines of the positions that do not fit.
-std::vector<std::string> read_positions(const std::filesystem::path& file, double sigma,
+std::vector<std::string> read_positions(const std::filesystem::path& file, const ScaleSigma& sigma,
                                         const pose::Bundle& bundle,
                                         std::vector<pose::KnownPosition>& known) {
   std::vector<std::string> names;
@@ -178,13 +178,15 @@ std::vector<std::string> read_positions(const std::filesystem::path& file, doubl
   for (const std::string& line : positions.notes) log_info("{}", line);
   for (const std::string& line : positions.absent) log_warning("{}", line);
   const std::vector<std::string> dropped = drop_outliers(positions, bundle, file);
+  const Eigen::Vector3d usual =
+      Eigen::Vector3d::Constant(sigma.given ? sigma.metres : kGuessedPositionSigma);
   for (const io::ImagePosition& one : positions.found)
     known.push_back(
-        {one.image, one.position, one.sigma.value_or(Eigen::Vector3d::Constant(sigma))});
+        {one.image, one.position, one.sigma.value_or(usual), !one.sigma && !sigma.given});
   return dropped;
 }
 
-std::vector<std::string> add(const std::string& scale_from, double sigma,
+std::vector<std::string> add(const std::string& scale_from, const ScaleSigma& sigma,
                              const std::filesystem::path& working_folder,
                              const pose::Bundle& bundle, pose::AdjustOptions& adjust) {
   const std::string where = kOption + scale_from;
@@ -193,10 +195,10 @@ std::vector<std::string> add(const std::string& scale_from, double sigma,
   const std::string rest = colon == std::string::npos ? "" : scale_from.substr(colon + 1);
   if (kind == "images")
     adjust.distances.push_back(
-        known_distance(KnownDistance::Between::images, rest, sigma, bundle, where));
+        known_distance(KnownDistance::Between::images, rest, sigma.metres, bundle, where));
   else if (kind == "points")
     adjust.distances.push_back(
-        known_distance(KnownDistance::Between::points, rest, sigma, bundle, where));
+        known_distance(KnownDistance::Between::points, rest, sigma.metres, bundle, where));
   else if (kind == "positions")
     return read_positions(working_folder / rest, sigma, bundle, adjust.positions);
   else
@@ -206,7 +208,7 @@ std::vector<std::string> add(const std::string& scale_from, double sigma,
 
 }  // namespace
 
-std::vector<std::string> add_known(const std::string& scale_from, double sigma,
+std::vector<std::string> add_known(const std::string& scale_from, const ScaleSigma& sigma,
                                    const std::filesystem::path& working_folder,
                                    const pose::Bundle& bundle, pose::AdjustOptions& adjust,
                                    UnusedInput& unused) {

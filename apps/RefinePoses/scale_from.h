@@ -10,15 +10,26 @@
 
 namespace axial::apps {
 
-// Adds the known lengths or positions of the option --scale-from to `adjust`, each with the
-// standard deviation `sigma` [m]. `scale_from` is the value of the option; an empty value adds
+// The standard deviation of known lengths or positions [m], the value of the option --scale-sigma.
+struct ScaleSigma {
+  double metres = 0.001;
+  bool given = false;  // by the user
+};
+
+// The standard deviation of positions that is taken until it is estimated [m].
+inline constexpr double kGuessedPositionSigma = 0.1;
+
+// Adds the known lengths or positions of the option --scale-from to `adjust`. Lengths have the
+// standard deviation `sigma`. Positions have it only if the user gave it; otherwise their standard
+// deviation is kGuessedPositionSigma and counts as a guess (KnownPosition::sigma_is_guess).
+// `scale_from` is the value of the option; an empty value adds
 // nothing. Its forms are:
 //
 //     images:NAME,NAME,METRES   the distance of two camera centres
 //     points:ID,ID,METRES       the distance of two points of the model
 //     positions:FILE            camera centres, a file of io::positions_of_images; at least three,
 //                               and not all on one line. Standard deviations in the file replace
-//                               `sigma`.
+//                               those of `sigma` and the guess.
 //
 // A NAME that contains a comma must be written in double quotes, and a double quote inside the name
 // as "". The quotes may be left out if the names of the model allow only one reading.
@@ -31,7 +42,7 @@ namespace axial::apps {
 // each, because the list of a survey may name more photographs. Positions that do not fit the
 // others (robust_similarity in scene/robust_similarity.h) are left out with a warning, and these
 // lines are returned. Positions of a mirrored frame are an error.
-std::vector<std::string> add_known(const std::string& scale_from, double sigma,
+std::vector<std::string> add_known(const std::string& scale_from, const ScaleSigma& sigma,
                                    const std::filesystem::path& working_folder,
                                    const pose::Bundle& bundle, pose::AdjustOptions& adjust,
                                    UnusedInput& unused);

@@ -28,6 +28,9 @@ struct KnownPosition {
   Eigen::Vector3d metres = Eigen::Vector3d::Zero();  // the centre [m], world frame
   // Standard deviations of the coordinates [m], above 0.
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
+  // True: nobody stated `sigma`. adjust() uses it all the same, and refine() replaces it by an
+  // estimate.
+  bool sigma_is_guess = false;
 };
 
 // Which numbers of a camera are unknown. housing_change.h lists the numbers by index, with their
@@ -96,7 +99,8 @@ struct AdjustReport {
 // (BundleCamera::change) to minimize the cost, from their present values. The cost is the sum of
 // the squared reprojection errors of the exact projection (with Huber loss, in units of
 // `pixel_sigma`) and of the squared deviations from known distances, positions and measured numbers
-// (in their standard deviations).
+// (in their standard deviations). Positions have a Huber loss, too: deviations of more than three
+// standard deviations count linearly.
 //
 // Without knowledge of positions, points or poses, the cost does not depend on where the model is
 // in the world. The pose of one image therefore stays constant: of the first image with an

@@ -66,6 +66,10 @@ ceres::Problem::Options problem_options(CurrentCameras* cameras) {
   return options;
 }
 
+// A position that is farther from the camera than this counts linearly [standard deviations]. Only
+// 3 % of correct positions are.
+constexpr double kPositionLoss = 3;
+
 void check(const Bundle& bundle, const AdjustOptions& options) {
   if (bundle.observations.empty()) fail("bundle adjustment: no observations");
   if (!(options.pixel_sigma > 0)) fail("bundle adjustment: pixel_sigma must be positive");
@@ -118,10 +122,7 @@ void AdjustProblem::add_observations() {
 
 void AdjustProblem::add_known() {
   for (const KnownDistance& known : options_.distances) add_known_distance(known);
-  for (const KnownPosition& known : options_.positions)
-    problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<PositionResidual, 3, kPoseNumbers>(
-                                   new PositionResidual{known.metres, known.sigma}),
-                               nullptr, image_block(known.image));
+  add_known_positions();
   for (std::size_t camera = 0; camera < changes_.size(); ++camera) {
     const Unknowns& unknowns = options_.unknowns(bundle_.cameras[camera]);
     for (int k = 0; k < kHousingNumbers; ++k)
@@ -139,6 +140,15 @@ void AdjustProblem::add_measured(std::size_t camera, int number) {
   if (!port) return;
   if (const std::optional<double> least = least_value(*port, number))
     problem_->SetParameterLowerBound(change_block(camera), number, *least);
+}
+
+void AdjustProblem::add_known_positions() {
+  if (options_.positions.empty()) return;
+  auto* loss = new ceres::HuberLoss(kPositionLoss);
+  for (const KnownPosition& known : options_.positions)
+    problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<PositionResidual, 3, kPoseNumbers>(
+                                   new PositionResidual{known.metres, known.sigma}),
+                               loss, image_block(known.image));
 }
 
 void AdjustProblem::add_known_distance(const KnownDistance& known) {

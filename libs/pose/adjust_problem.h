@@ -55,6 +55,7 @@ class AdjustProblem {
  private:
   void add_observations();
   void add_known();
+  void add_known_positions();
   void add_known_distance(const KnownDistance& known);
   void add_measured(std::size_t camera, int number);
   void fix_points();

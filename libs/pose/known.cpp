@@ -99,4 +99,17 @@ std::vector<std::string> lost_knowledge(const Bundle& bundle, const AdjustOption
   return reasons;
 }
 
+std::pair<Eigen::Matrix3Xd, Eigen::Matrix3Xd> centres_and_positions(
+    const Bundle& bundle, const std::vector<KnownPosition>& positions) {
+  const auto count = static_cast<Eigen::Index>(positions.size());
+  std::pair<Eigen::Matrix3Xd, Eigen::Matrix3Xd> pairs{Eigen::Matrix3Xd(3, count),
+                                                      Eigen::Matrix3Xd(3, count)};
+  Eigen::Index column = 0;
+  for (const KnownPosition& known : positions) {
+    pairs.first.col(column) = bundle.images[known.image].pose.centre;
+    pairs.second.col(column++) = known.metres;
+  }
+  return pairs;
+}
+
 }  // namespace axial::pose

@@ -2,7 +2,9 @@
 // Checks whether lengths and positions that are known in metres determine the scale of a bundle.
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pose/adjust.h"
@@ -20,5 +22,9 @@ std::vector<std::string> lost_knowledge(const Bundle& bundle, const AdjustOption
 // The indices into `options.positions` of the lost positions, in ascending order. A position is
 // lost if its image has no observations.
 std::vector<std::size_t> lost_positions(const Bundle& bundle, const AdjustOptions& options);
+
+// The camera centres of the images whose positions are known, and these positions, as columns.
+std::pair<Eigen::Matrix3Xd, Eigen::Matrix3Xd> centres_and_positions(
+    const Bundle& bundle, const std::vector<KnownPosition>& positions);
 
 }  // namespace axial::pose

@@ -17,6 +17,9 @@ namespace {
 
 // Half a standard deviation in one direction. The last adjustment removes what is left.
 constexpr double kGainOfRounds = 0.1;
+// In the rounds, positions of unknown accuracy count with their estimated standard deviation times
+// this.
+constexpr double kLooseness = 3;
 constexpr std::size_t kTrialPoints = 1500;  // enough to distinguish scales
 // Median distances of the scene [m] that are tried: from close-ups to wide surveys.
 constexpr std::array<double, 7> kTrialDistances{0.25, 0.5, 1, 2, 4, 8, 16};
@@ -40,12 +43,8 @@ double known_scale(const Bundle& bundle, const AdjustOptions& options) {
 // Moves the bundle to its known positions by a similarity; false if fewer than three are known.
 bool place_by_positions(Bundle& bundle, const std::vector<KnownPosition>& positions) {
   if (positions.size() < 3) return false;
-  Eigen::Matrix3Xd from(3, positions.size()), to(3, positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    from.col(static_cast<Eigen::Index>(i)) = bundle.images[positions[i].image].pose.centre;
-    to.col(static_cast<Eigen::Index>(i)) = positions[i].metres;
-  }
-  const Similarity place = best_similarity(from, to);
+  const auto [centres, places] = centres_and_positions(bundle, positions);
+  const Similarity place = best_similarity(centres, places);
   for (BundleImage& image : bundle.images) image.pose = place(image.pose);
   for (BundlePoint& point : bundle.points) point.position = place(point.position);
   return true;
@@ -130,6 +129,13 @@ class Adjuster {
   double seconds_ = 0;  // time of the last iteration; 0: there was none
 };
 
+// Judges the known positions before an adjustment.
+void judge(const Bundle& bundle, double factor, AdjustOptions& options, RefineReport& report) {
+  for (std::string& line : judge_positions(bundle, factor, options.positions))
+    report.wrong_positions.push_back(std::move(line));
+  report.positions = options.positions;
+}
+
 }  // namespace
 
 double median_distance(const Bundle& bundle) {
@@ -172,6 +178,7 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink
   adjusting.least_gain = std::max(adjusting.least_gain, kGainOfRounds);
   Adjuster adjuster(progress, iterations);
   for (int round = 0; round < options.rounds; ++round) {
+    judge(bundle, kLooseness, adjusting, report);
     report.last = adjuster.adjust(bundle, adjusting, fmt::format("round {}", round + 1));
     // The adjusted cameras predict which of several observations in one image is the right one.
     if (round == 0) report.repeated = drop_repeated(bundle);
@@ -188,10 +195,13 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink
     adjusting.pixel_sigma = observed_pixel_sigma(bundle, adjusting);
   }
   adjusting.least_gain = options.adjust.least_gain;
+  judge(bundle, 1, adjusting, report);
   report.last = adjuster.adjust(bundle, adjusting, "last adjustment");
   filter(bundle, limits, &report.dropped);
   if (bundle.observations.empty()) fail("no observation fits refractive cameras");
   report.lost = lost_knowledge(bundle, adjusting);
+  report.position_distances = position_distances(bundle, report.positions);
+  correct_contradicted(report.position_distances, report.positions);
   report.rms_after = root_mean_square(reprojection_errors(bundle));
   report.observations_after = bundle.observations.size();
   report.points_after = bundle.points.size();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pose/adjust.h"
+#include "pose/position_sigma.h"
 #include "pose/tracks.h"
 
 namespace axial::pose {
@@ -35,6 +36,14 @@ struct RefineReport {
   // If it finds one before the last adjustment, it ends there, and `rms_after`,
   // `observations_after` and `points_after` stay 0.
   std::vector<std::string> lost;
+  // The known positions that the last adjustment used, with the standard deviations that it used,
+  // but stated standard deviations that are contradicted are corrected (correct_contradicted() in
+  // position_sigma.h). uncertainty() needs these positions in place of `options.adjust.positions`.
+  std::vector<KnownPosition> positions;
+  PositionDistances position_distances;  // of these positions, before the correction
+  // A line for each known position that was left out, because it does not fit the others
+  // (judge_positions() in position_sigma.h).
+  std::vector<std::string> wrong_positions;
 };
 
 // Scales a bundle of any scale to metres, as a first guess, and triangulates its points anew. A
@@ -59,9 +68,17 @@ void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 // `iterations` one line for each iteration of the solver. With AdjustOptions::many_images or more
 // poses, `progress` also gets a line at the start of each adjustment, and the rounds before the
 // last adjustment end at an AdjustOptions::least_gain of 0.1 or of `options.adjust` if that is
-// larger: this is enough to find observations that do not fit. For the standard deviations of the
-// result, call uncertainty() with the refined bundle and `options.adjust`. Throws an Error if no
-// observation is left, or if adjust() fails.
+// larger: this is enough to find observations that do not fit.
+//
+// Known positions are judged (judge_positions() in position_sigma.h) at the start and after each
+// round: positions that do not fit are left out, and the standard deviation of positions with
+// `sigma_is_guess` is estimated. In the rounds, these positions have three times the estimate, so
+// that the poses follow the observations and the estimate shows the accuracy of the positions. In
+// the last adjustment they have the estimate itself.
+//
+// For the standard deviations of the result, call uncertainty() with the refined bundle and
+// `options.adjust`, but with the positions of the report. Throws an Error if no observation is left,
+// or if adjust() fails.
 RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink& progress = {},
                     const TextSink& iterations = {});
 

@@ -174,6 +174,21 @@ TEST(Adjust, KnownPositionsHoldTheModel) {
   EXPECT_LT(pose_errors(bundle, truth).centre_rms, 0.001);
 }
 
+TEST(Adjust, AWrongPositionDoesNotBendTheModel) {
+  const Bundle truth = survey(camera_behind(flat_port()), {.noise = 0.3});
+  const auto centre_error = [&](double off) {
+    Bundle bundle = truth;
+    AdjustOptions options;
+    for (std::size_t i = 0; i < truth.images.size(); ++i)
+      options.positions.push_back(
+          {i, truth.images[i].pose.centre, Eigen::Vector3d::Constant(1e-3)});
+    options.positions[5].metres.x() += off;
+    adjust(bundle, options);
+    return pose_errors(bundle, truth).centre_rms;
+  };
+  EXPECT_LT(centre_error(0.1), 2 * centre_error(0));  // 30 times without a robust loss
+}
+
 TEST(Adjust, AKnownLengthBetweenPointsSetsTheScale) {
   const Bundle truth = survey(camera_behind(std::nullopt), {});
   Bundle bundle = truth;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <random>
 
 #include "pose/survey.h"
 
@@ -137,6 +138,108 @@ TEST(RefineBehindFlatPortsAndDomes, FindsPosesFromAbsorbedOnes) {
   EXPECT_NEAR(after.scale, 1, 1e-3);
   EXPECT_GT(before.centre_rms, 5 * after.centre_rms);
   EXPECT_GT(pose_errors(refined(true).first, truth).centre_rms, 5 * after.centre_rms);
+}
+
+// Positions of unknown accuracy, with the standard deviation `sigma` in truth.
+AdjustOptions with_positions(const Bundle& truth, double sigma, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0, sigma);
+  AdjustOptions options;
+  for (std::size_t i = 0; i < truth.images.size(); ++i) {
+    const Eigen::Vector3d off(noise(random), noise(random), noise(random));
+    options.positions.push_back(
+        {i, truth.images[i].pose.centre + off, Eigen::Vector3d::Constant(0.1), true});
+  }
+  return options;
+}
+
+// A survey as COLMAP finds it, with positions.
+class RefineWithPositions : public ::testing::Test {
+ protected:
+  const Bundle truth_ =
+      survey(camera_behind(flat_port(3)), {.distance = 2.5, .points = 400, .noise = 0.3});
+  const Bundle absorbed_ = absorbed(truth_);
+
+  std::pair<Bundle, RefineReport> refined(const RefineOptions& options) const {
+    Bundle bundle = absorbed_;
+    bring_to_metres(bundle, options.adjust);
+    const RefineReport report = refine(bundle, options);
+    return {bundle, report};
+  }
+};
+
+// The standard deviation of positions is estimated, so that they do not bend the poses, and so that
+// lengths are known as well as the report says.
+TEST_F(RefineWithPositions, EstimatesTheirAccuracy) {
+  const double exact = pose_errors(refined(with_known_length(truth_)).first, truth_).centre_rms;
+  for (const double sigma : {0.005, 0.05}) {
+    RefineOptions options;
+    options.adjust = with_positions(truth_, sigma, 7);
+    const auto [bundle, report] = refined(options);
+    ASSERT_EQ(report.positions.size(), 12u);
+    EXPECT_NEAR(report.positions[0].sigma.x(), sigma, 0.4 * sigma);
+    EXPECT_LT(pose_errors(bundle, truth_).centre_rms, 1.1 * exact);
+    options.adjust.positions = report.positions;
+    const double stated = uncertainty(bundle, options.adjust).scale_sigma;
+    EXPECT_LT(std::abs(pose_errors(bundle, truth_).scale - 1), 3 * stated);
+    EXPECT_GT(stated, 0.2 * sigma);
+    EXPECT_LT(stated, sigma);
+  }
+}
+
+// Poses from few, coarse observations are about as uncertain as the positions. They must not follow
+// the positions so far that the positions seem exact.
+TEST(Refine, EstimatesTheAccuracyOfPositionsBesideUncertainPoses) {
+  constexpr double kSigma = 0.004;
+  constexpr int kDraws = 10;
+  double variance = 0;
+  for (unsigned draw = 0; draw < kDraws; ++draw) {
+    const Bundle truth =
+        survey(camera_behind(flat_port()),
+               {.distance = 2.5, .images = 8, .points = 60, .noise = 1.5, .seed = 1 + draw});
+    RefineOptions options;
+    options.tracks.max_error = 10;
+    options.adjust = with_positions(truth, kSigma, draw);
+    Bundle bundle = truth;
+    const double sigma = refine(bundle, options).positions[0].sigma.x();
+    variance += sigma * sigma / kDraws;
+  }
+  EXPECT_GT(std::sqrt(variance), 0.8 * kSigma);
+}
+
+// The initial poses are bent, so a wrong position is found only by refined poses.
+TEST_F(RefineWithPositions, FindsAWrongOneByTheRefinedPoses) {
+  RefineOptions options;
+  options.adjust = with_positions(truth_, 0.002, 7);
+  options.adjust.positions[4].metres.x() += 0.1;
+  Bundle start = absorbed_;
+  bring_to_metres(start, options.adjust);
+  std::vector<KnownPosition> of_start = options.adjust.positions;
+  ASSERT_TRUE(judge_positions(start, 1, of_start).empty());
+  const auto [bundle, report] = refined(options);
+  ASSERT_EQ(report.wrong_positions.size(), 1u);
+  EXPECT_NE(report.wrong_positions[0].find("image4.jpg"), std::string::npos);
+  EXPECT_EQ(report.positions.size(), 11u);
+  EXPECT_LT(report.positions[0].sigma.x(), 0.004);
+}
+
+// Positions that contradict their standard deviation are corrected for the standard deviation of
+// lengths, and do not bend the poses.
+TEST_F(RefineWithPositions, CorrectsAContradictedStandardDeviation) {
+  const double exact = pose_errors(refined(with_known_length(truth_)).first, truth_).centre_rms;
+  RefineOptions options;
+  options.adjust = with_positions(truth_, 0.05, 7);
+  for (KnownPosition& known : options.adjust.positions) {
+    known.sigma.setConstant(0.001);
+    known.sigma_is_guess = false;
+  }
+  const auto [bundle, report] = refined(options);
+  EXPECT_GT(report.position_distances.of_stated, 10);
+  EXPECT_GT(report.positions[0].sigma.x(), 0.02);
+  EXPECT_LT(pose_errors(bundle, truth_).centre_rms, 3 * exact);
+  options.adjust.positions = report.positions;
+  const double stated = uncertainty(bundle, options.adjust).scale_sigma;
+  EXPECT_LT(std::abs(pose_errors(bundle, truth_).scale - 1), 3 * stated);
 }
 
 TEST(BringToMetres, TakesTheScaleOfKnownPositions) {
