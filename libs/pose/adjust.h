@@ -114,8 +114,8 @@ struct AdjustReport {
 // an iteration depend on the pairs of images with common points. AdjustOptions::many_images says
 // how bundles of many images are solved in fewer iterations. `sink` may be empty.
 //
-// A measured distance of a flat port does not become negative, and a measured index of the water not
-// less than that of the air.
+// A measured distance of a flat port does not become negative, and a measured index of the water
+// not less than that of the air.
 //
 // Throws an Error if a number of a port is free for a camera in air, if a known length, a standard
 // deviation of known values or `pixel_sigma` is not positive, if a known distance names a point

@@ -95,15 +95,24 @@ void check(const Bundle& bundle, const AdjustOptions& options) {
 AdjustProblem::AdjustProblem(const Bundle& bundle, const AdjustOptions& options)
     : bundle_(bundle), options_(options) {
   check(bundle, options);
-  for (const BundlePoint& point : bundle.points) points_.push_back(point.position);
-  tied_.resize(points_.size());
-  for (const BundleImage& image : bundle.images) poses_.push_back(numbers_of(image.pose));
-  for (const BundleCamera& camera : bundle.cameras) changes_.push_back(camera.change);
-  cameras_ = std::make_unique<CurrentCameras>(bundle.cameras, changes_);
+  fill_numbers();
+  tied_.resize(bundle.points.size());
+  cameras_ = std::make_unique<CurrentCameras>(bundle.cameras, change_block(0));
   problem_ = std::make_unique<ceres::Problem>(problem_options(cameras_.get()));
   add_observations();
   add_known();
   fix_what_stays();
+}
+
+void AdjustProblem::fill_numbers() {
+  numbers_.resize(kPoseNumbers * bundle_.images.size() + kHousingNumbers * bundle_.cameras.size() +
+                  3 * bundle_.points.size());
+  for (std::size_t i = 0; i < bundle_.images.size(); ++i)
+    std::ranges::copy(numbers_of(bundle_.images[i].pose), image_block(i));
+  for (std::size_t i = 0; i < bundle_.cameras.size(); ++i)
+    std::ranges::copy(bundle_.cameras[i].change, change_block(i));
+  for (std::size_t i = 0; i < bundle_.points.size(); ++i)
+    std::ranges::copy(bundle_.points[i].position, point_block(i));
 }
 
 void AdjustProblem::add_observations() {
@@ -115,7 +124,7 @@ void AdjustProblem::add_observations() {
     problem_->AddResidualBlock(
         new ObservationCost(observation, image.pose, bundle_.cameras[image.camera],
                             (*cameras_)[image.camera]),
-        loss, image_block(observation.image), points_[observation.point].data(),
+        loss, image_block(observation.image), point_block(observation.point),
         change_block(image.camera));
   }
 }
@@ -123,7 +132,7 @@ void AdjustProblem::add_observations() {
 void AdjustProblem::add_known() {
   for (const KnownDistance& known : options_.distances) add_known_distance(known);
   add_known_positions();
-  for (std::size_t camera = 0; camera < changes_.size(); ++camera) {
+  for (std::size_t camera = 0; camera < bundle_.cameras.size(); ++camera) {
     const Unknowns& unknowns = options_.unknowns(bundle_.cameras[camera]);
     for (int k = 0; k < kHousingNumbers; ++k)
       if (unknowns.free[static_cast<std::size_t>(k)]) add_measured(camera, k);
@@ -164,24 +173,24 @@ void AdjustProblem::add_known_distance(const KnownDistance& known) {
   tied_[first] = tied_[second] = true;
   problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<LengthResidual, 1, 3, 3>(
                                  new LengthResidual{0, known.metres, known.sigma}),
-                             nullptr, points_[first].data(), points_[second].data());
+                             nullptr, point_block(first), point_block(second));
 }
 
 std::size_t AdjustProblem::anchor() const {
-  for (std::size_t i = 0; i < poses_.size(); ++i)
+  for (std::size_t i = 0; i < bundle_.images.size(); ++i)
     if (is_observed(i)) return i;
   return 0;
 }
 
 void AdjustProblem::fix_points() {
-  for (Eigen::Vector3d& point : points_)
-    if (problem_->HasParameterBlock(point.data()))
-      problem_->SetParameterBlockConstant(point.data());
+  for (std::size_t i = 0; i < bundle_.points.size(); ++i)
+    if (problem_->HasParameterBlock(point_block(i)))
+      problem_->SetParameterBlockConstant(point_block(i));
 }
 
 void AdjustProblem::fix_poses() {
-  for (PoseNumbers& pose : poses_)
-    if (problem_->HasParameterBlock(pose.data())) problem_->SetParameterBlockConstant(pose.data());
+  for (std::size_t i = 0; i < bundle_.images.size(); ++i)
+    if (is_observed(i)) problem_->SetParameterBlockConstant(image_block(i));
 }
 
 void AdjustProblem::fix_what_stays() {
@@ -189,17 +198,17 @@ void AdjustProblem::fix_what_stays() {
   if (options_.poses_known) fix_poses();
   if (!options_.points_known && !options_.poses_known && options_.positions.size() < 3)
     problem_->SetParameterBlockConstant(image_block(anchor()));
-  for (std::size_t camera = 0; camera < changes_.size(); ++camera) {
+  for (std::size_t camera = 0; camera < bundle_.cameras.size(); ++camera) {
     const Unknowns& unknowns = options_.unknowns(bundle_.cameras[camera]);
     std::vector<int> fixed;
     for (int k = 0; k < kHousingNumbers; ++k)
       if (!unknowns.free[static_cast<std::size_t>(k)]) fixed.push_back(k);
-    HousingChange<double>& change = changes_[camera];
-    if (!problem_->HasParameterBlock(change.data()) || fixed.empty()) continue;
+    double* const change = change_block(camera);
+    if (!problem_->HasParameterBlock(change) || fixed.empty()) continue;
     if (fixed.size() == kHousingNumbers)
-      problem_->SetParameterBlockConstant(change.data());
+      problem_->SetParameterBlockConstant(change);
     else
-      problem_->SetManifold(change.data(), new ceres::SubsetManifold(kHousingNumbers, fixed));
+      problem_->SetManifold(change, new ceres::SubsetManifold(kHousingNumbers, fixed));
   }
 }
 
@@ -209,34 +218,38 @@ std::vector<double*> AdjustProblem::camera_blocks() {
     if (problem_->HasParameterBlock(block) && !problem_->IsParameterBlockConstant(block))
       blocks.push_back(block);
   };
-  for (PoseNumbers& pose : poses_) add(pose.data());
-  for (HousingChange<double>& change : changes_) add(change.data());
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    if (tied_[i]) add(points_[i].data());
+  for (std::size_t i = 0; i < bundle_.images.size(); ++i) add(image_block(i));
+  for (std::size_t i = 0; i < bundle_.cameras.size(); ++i) add(change_block(i));
+  for (std::size_t i = 0; i < bundle_.points.size(); ++i)
+    if (tied_[i]) add(point_block(i));
   return blocks;
 }
 
-std::size_t AdjustProblem::pose_count() const {
-  return static_cast<std::size_t>(std::ranges::count_if(poses_, [&](const PoseNumbers& pose) {
-    return problem_->HasParameterBlock(pose.data()) &&
-           !problem_->IsParameterBlockConstant(pose.data());
-  }));
+std::size_t AdjustProblem::pose_count() {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < bundle_.images.size(); ++i)
+    count += is_observed(i) && !problem_->IsParameterBlockConstant(image_block(i)) ? 1 : 0;
+  return count;
 }
 
 std::vector<double*> AdjustProblem::point_blocks() {
   std::vector<double*> blocks;
   if (options_.points_known) return blocks;
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    if (!tied_[i] && problem_->HasParameterBlock(points_[i].data()))
-      blocks.push_back(points_[i].data());
+  for (std::size_t i = 0; i < bundle_.points.size(); ++i)
+    if (!tied_[i] && problem_->HasParameterBlock(point_block(i))) blocks.push_back(point_block(i));
   return blocks;
 }
 
-void AdjustProblem::write_back(Bundle& bundle) const {
-  for (std::size_t i = 0; i < poses_.size(); ++i)
-    bundle.images[i].pose = pose_with(bundle_.images[i].pose, poses_[i]);
-  for (std::size_t i = 0; i < points_.size(); ++i) bundle.points[i].position = points_[i];
-  for (std::size_t i = 0; i < changes_.size(); ++i) bundle.cameras[i].change = changes_[i];
+void AdjustProblem::write_back(Bundle& bundle) {
+  for (std::size_t i = 0; i < bundle.images.size(); ++i) {
+    PoseNumbers pose;
+    std::copy_n(image_block(i), kPoseNumbers, pose.begin());
+    bundle.images[i].pose = pose_with(bundle_.images[i].pose, pose);
+  }
+  for (std::size_t i = 0; i < bundle.points.size(); ++i)
+    std::copy_n(point_block(i), 3, bundle.points[i].position.begin());
+  for (std::size_t i = 0; i < bundle.cameras.size(); ++i)
+    std::copy_n(change_block(i), kHousingNumbers, bundle.cameras[i].change.begin());
 }
 
 }  // namespace axial::pose

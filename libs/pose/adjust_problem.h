@@ -33,26 +33,33 @@ class AdjustProblem {
   std::vector<double*> point_blocks();   // all other points
 
   // The number of poses that the solver changes.
-  std::size_t pose_count() const;
+  std::size_t pose_count();
 
   // The index of the first image for which is_observed() is true; 0 if there is none. adjust() says
   // when its pose is constant.
   std::size_t anchor() const;
   // True if the image has an observation or a known distance or position.
   bool is_observed(std::size_t image) const {
-    return problem_->HasParameterBlock(poses_[image].data());
+    return problem_->HasParameterBlock(numbers_.data() + kPoseNumbers * image);
   }
 
   // The parameter block of the pose of an image, and of the changes of a camera. Both exist in the
   // problem only if a residual depends on them.
-  double* image_block(std::size_t image) { return poses_[image].data(); }
-  double* change_block(std::size_t camera) { return changes_[camera].data(); }
+  double* image_block(std::size_t image) { return numbers_.data() + kPoseNumbers * image; }
+  double* change_block(std::size_t camera) {
+    return image_block(bundle_.images.size()) + kHousingNumbers * camera;
+  }
 
   // Writes the present values of the parameter blocks, as poses, points and changes, to `bundle`,
   // which is the bundle of the constructor or a copy of it.
-  void write_back(Bundle& bundle) const;
+  void write_back(Bundle& bundle);
 
  private:
+  // The block of the position of a point.
+  double* point_block(std::size_t point) {
+    return change_block(bundle_.cameras.size()) + 3 * point;
+  }
+  void fill_numbers();
   void add_observations();
   void add_known();
   void add_known_positions();
@@ -64,10 +71,10 @@ class AdjustProblem {
 
   const Bundle& bundle_;
   const AdjustOptions& options_;
-  std::vector<PoseNumbers> poses_;
-  std::vector<Eigen::Vector3d> points_;
+  // All parameter blocks: of the poses, of the changes and of the points. The solver orders blocks
+  // by their addresses: in one array, the order is the same in every run.
+  std::vector<double> numbers_;
   std::vector<bool> tied_;  // points with a known distance to another point
-  std::vector<HousingChange<double>> changes_;
   std::unique_ptr<CurrentCameras> cameras_;
   std::unique_ptr<ceres::Problem> problem_;
 };

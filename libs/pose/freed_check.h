@@ -37,10 +37,10 @@ struct FreedNumber {
 // above 4, and FreedNumber::effect is above 0.001. The RMS error itself does not count. Poses can
 // hide most of a wrong number in it, but not the wrong shape of the scene.
 //
-// Each adjustment uses at most 40 images and 2,000 points of the refined bundle and runs for at most
-// 20 iterations. The scale of the model stays nearly constant. A wrong port distance is therefore
-// found only if the scale was given. If refraction alone determined the scale, the scale has
-// already adapted to the wrong distance.
+// Each adjustment uses at most 40 images and 2,000 points of the refined bundle and runs for at
+// most 20 iterations. The scale of the model stays nearly constant. A wrong port distance is
+// therefore found only if the scale was given. If refraction alone determined the scale, the scale
+// has already adapted to the wrong distance.
 //
 // Returns nothing if the stated numbers fit, if fewer than 3 images or 20 points are left, if the
 // ports are neither all flat nor all domes, or if an adjustment fails.

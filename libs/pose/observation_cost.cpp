@@ -50,17 +50,20 @@ Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& w) {
          (angle - std::sin(angle)) / (angle2 * angle) * W * W;
 }
 
-CurrentCameras::CurrentCameras(std::span<const BundleCamera> cameras,
-                               std::span<const HousingChange<double>> changes)
+CurrentCameras::CurrentCameras(std::span<const BundleCamera> cameras, const double* changes)
     : measured_(cameras), changes_(changes) {
-  for (std::size_t i = 0; i < measured_.size(); ++i)
-    cameras_.emplace_back(with_change(measured_[i].measured, changes_[i]));
+  for (std::size_t i = 0; i < measured_.size(); ++i) cameras_.push_back(now(i));
+}
+
+PhotographCamera CurrentCameras::now(std::size_t camera) const {
+  const HousingChange<double> change =
+      Eigen::Map<const HousingChange<double>>(changes_ + kHousingNumbers * camera);
+  return PhotographCamera(with_change(measured_[camera].measured, change));
 }
 
 void CurrentCameras::PrepareForEvaluation(bool, bool new_evaluation_point) {
   if (!new_evaluation_point) return;
-  for (std::size_t i = 0; i < cameras_.size(); ++i)
-    cameras_[i] = PhotographCamera(with_change(measured_[i].measured, changes_[i]));
+  for (std::size_t i = 0; i < cameras_.size(); ++i) cameras_[i] = now(i);
 }
 
 bool ObservationCost::Evaluate(double const* const* parameters, double* residuals,

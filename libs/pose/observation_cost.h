@@ -32,10 +32,9 @@ Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& w);
 // point at which the solver evaluates the cost, and not for each observation.
 class CurrentCameras : public ceres::EvaluationCallback {
  public:
-  // `changes`: the solver's parameter blocks, one per camera, in the order of `cameras`. Both
-  // arrays must outlive the object.
-  CurrentCameras(std::span<const BundleCamera> cameras,
-                 std::span<const HousingChange<double>> changes);
+  // `changes`: the solver's parameter blocks, one per camera with kHousingNumbers numbers, in the
+  // order of `cameras` and one after the other. Both arrays must outlive the object.
+  CurrentCameras(std::span<const BundleCamera> cameras, const double* changes);
 
   // Called by the solver. Rebuilds the cameras from `changes` if `new_evaluation_point` is true.
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
@@ -44,8 +43,10 @@ class CurrentCameras : public ceres::EvaluationCallback {
   const PhotographCamera& operator[](std::size_t camera) const { return cameras_[camera]; }
 
  private:
+  PhotographCamera now(std::size_t camera) const;
+
   std::span<const BundleCamera> measured_;
-  std::span<const HousingChange<double>> changes_;
+  const double* changes_;
   std::vector<PhotographCamera> cameras_;
 };
 

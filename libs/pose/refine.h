@@ -77,8 +77,8 @@ void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 // the last adjustment they have the estimate itself.
 //
 // For the standard deviations of the result, call uncertainty() with the refined bundle and
-// `options.adjust`, but with the positions of the report. Throws an Error if no observation is left,
-// or if adjust() fails.
+// `options.adjust`, but with the positions of the report. Throws an Error if no observation is
+// left, or if adjust() fails.
 RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink& progress = {},
                     const TextSink& iterations = {});
 

@@ -37,9 +37,17 @@ def lines_of_poses(refined):
         yield f"- the scale is known to {100 * sigma:.2g} % (one standard deviation)"
     for camera in refined["cameras"]:
         for value in camera["free"]:
-            sigma = "not known" if value["sigma"] is None else f"+- {value['sigma']:.2g}"
-            yield (f"- camera {camera['id']}, {value['name']}: {value['value']:.6g} "
-                   f"{value['unit']}, {sigma}")
+            yield f"- camera {camera['id']}, {value['name']}: {line_of_value(value)}"
+
+
+def line_of_value(value):
+    """An estimated value of lens or port, its stated value, and what decided."""
+    sigma = "not known" if value["sigma"] is None else f"+- {value['sigma']:.2g}"
+    found = f"{value['value']:.6g} {value['unit']}, {sigma}"
+    if value["sigma_before"] is None:
+        return f"{found} (before: {value['before']:.6g})"
+    return (f"{found} (stated: {value['before']:.6g} +- {value['sigma_before']:.2g}; decided by the "
+            f"{value['decided_by']})")
 
 
 def lines_of_accuracy(evaluation):

@@ -42,7 +42,7 @@ def options(script_folder, description):
                         help="known lengths or positions [m], as for RefinePoses")
     masks.add_options(parser)
     parser.add_argument("--refine", default="",
-                        help="further unknowns, as for RefinePoses")
+                        help="values of lens and port to estimate, as for RefinePoses (default: auto)")
     parser.add_argument("--matcher", choices=matching.MATCHERS, default="exhaustive",
                         help="pairs of images that COLMAP matches: all, neighbours in time, neighbours "
                         "in space, or images that look alike (default: %(default)s)")
