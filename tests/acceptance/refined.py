@@ -118,7 +118,7 @@ def refined(scene, base, work):
     work.mkdir(parents=True, exist_ok=True)
     raw = raw_model(truth, base)
     colmaps = align(raw, truth.data / "sparse", work / "raw")
-    ours = refine(truth, raw, work / "refined", "--scale-from", baseline(truth))
+    ours = refine(truth, raw, work / "refined", "--refine", "none", "--scale-from", baseline(truth))
     off = align(work / "refined", truth.data / "sparse", work / "aligned")
     at_true_poses(work / "raw", truth, work / "true")
     true = refine(truth, work / "true", work / "placed", "--poses", "known")

@@ -203,7 +203,9 @@ class Scales(ProgramTest):
         for expected, arguments in (
                 ("--scale-sigma 0.1: is the standard deviation of --scale-from",
                  ("--scale-sigma", "0.1")),
-                ("--normal-sigma 1: --refine does not name normal", ("--normal-sigma", "1")),
+                ("--normal-sigma 1: --refine none does not name normal",
+                 ("--refine", "none", "--normal-sigma", "1")),
+                ("--centre-sigma 1: --refine auto does not name centre", ("--centre-sigma", "1")),
                 ("--distance-sigma 1e-320: must be 0, or 1e-12 or more",
                  ("--refine", "distance", "--distance-sigma", "1e-320")),
                 ("--focal-sigma 0.1: --refine does not name focal",
