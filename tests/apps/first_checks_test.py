@@ -39,8 +39,8 @@ class Values(InFolder):
         return ""
 
     def test_names_and_lengths_are_checked(self):
-        for text in ("", "positions:file", "points:3,4,0.5", "images:a.jpg,dive/b.jpg,0.5", 'images:"a.jpg",dive/b.jpg,1e-2',
-                     'images:"c,d.jpg",a.jpg,0.5', "images:c,d.jpg,a.jpg,0.5"):
+        for text in ("", "positions:file", "points:3,4,0.5", "images:a.jpg,dive/b.jpg,0.5",
+                     'images:"a.jpg",dive/b.jpg,1e-2', 'images:"c,d.jpg",a.jpg,0.5', "images:c,d.jpg,a.jpg,0.5"):
             self.assertEqual(self.scale(text), "", text)
         for text, reason in (("images:a.jpg,x.jpg,0.5", "images has no photograph 'x.jpg'"),
                              ("images:a.jpg,B.jpg,0.5", "images has no photograph 'B.jpg'; there is dive/b.jpg"),
@@ -65,7 +65,7 @@ class Values(InFolder):
     def test_unknowns_fit_the_ports(self):
         flat, dome = (self.write(f"{port['type']}.json", housing_with(port)) for port in (FLAT, DOME))
         for text, housing in (("", flat), ("normal,distance,thickness,index,focal", flat), ("centre", dome),
-                              ("none", flat), ("normal", "flat"), ("centre,normal", "unknown"),
+                              ("none", flat), ("auto", dome), ("normal", "flat"), ("centre,normal", "unknown"),
                               ("normal,centre", self.write("calibration.yaml", "model: OPENCV\n"))):
             self.assertEqual(self.refine(text, housing), "", text)
         words = "normal, distance, centre, thickness, index, focal"
@@ -78,8 +78,9 @@ class Values(InFolder):
 
     def test_the_program_takes_the_same_unknowns(self):
         said = " ".join(run("RefinePoses", "--help").stdout.split())
-        listed = re.search(r"--refine arg .*?any of (.*?) \(of the water\), focal", said)[1]
-        self.assertEqual(re.findall(r"\w+", re.sub(r"\(.*?\)|\(.*", "", listed)) + ["focal"], list(first_checks.REFINED))
+        alone, listed = re.search(r"--refine arg .*?: (auto, none), or a list of (.*?);", said).groups()
+        self.assertEqual([[word] for word in alone.split(", ")], list(first_checks.ALONE))
+        self.assertEqual(re.findall(r"\w+", re.sub(r"\(.*?\)", "", listed)), list(first_checks.REFINED))
 
 
 class Estimates(InFolder):
@@ -155,8 +156,8 @@ class Checked(ProgramTest):
         self.assertIn("bad.txt: line 1: PINHOLE parameter is 'x'", self.refused(lens="bad.txt"))
         for number, port in enumerate((SURFACE, {**FLAT, "n_water": 0.5}, {**FLAT, "distance_mm": 20})):
             write(self.path(f"{number}.json"), housing_with(port))
-        self.assertEqual(self.refused(housing="0.json"), "0.json: housing.ports.main is a water surface, expected ports "
-                         "that are fixed to the camera")
+        self.assertEqual(self.refused(housing="0.json"), "0.json: housing.ports.main is a water surface, expected "
+                         "ports that are fixed to the camera")
         self.assertIn("1.json: housing.ports.main", self.refused(housing="1.json"))
         self.assertIn("2.json: housing.ports.main", self.refused(housing="2.json"))
 
@@ -171,14 +172,15 @@ class Checked(ProgramTest):
 
     def test_a_lens_of_another_size(self):
         write(self.path("lens.txt"), "1 PINHOLE 40 36 40 40 20 18\n")
-        self.assertEqual(self.refused(), "--lens lens.txt: has no lens for 3 of 3 photographs: 0.png, 1.png, 2.png are of "
-                         "48 x 36 pixels: no lens has this size or this ratio of the sides")
+        self.assertEqual(self.refused(), "--lens lens.txt: has no lens for 3 of 3 photographs: 0.png, 1.png, 2.png are "
+                         "of 48 x 36 pixels: no lens has this size or this ratio of the sides")
 
     def test_options_of_programs(self):
         self.assertEqual(self.refused("--densify=--iterz 3"),
                          "--densify --iterz 3: command line: unrecognised option '--iterz'")
         self.assertIn("--mesh --smooth x: ", self.refused("--mesh=--smooth x"))
-        self.assertIn("unrecognised option '--SiftMatching.nothing'", self.refused("--matches=--SiftMatching.nothing 1"))
+        self.assertIn("unrecognised option '--SiftMatching.nothing'",
+                      self.refused("--matches=--SiftMatching.nothing 1"))
         self.assertIn("unrecognised option '--Mapper.nothing'", self.refused("--poses=--Mapper.nothing 1"))
 
     def test_names_and_unknowns(self):

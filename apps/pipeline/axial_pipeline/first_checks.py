@@ -16,7 +16,7 @@ from .programs import Programs, words_of
 
 # What --refine of RefinePoses takes, and the kind of port that a value needs.
 REFINED = {"normal": "flat", "distance": "flat", "centre": "dome", "thickness": "", "index": "", "focal": ""}
-ALONE = "none"  # a value of --refine: nothing
+ALONE = (["auto"], ["none"])  # other values of --refine
 KINDS = ("flat", "dome", "unknown")  # values of --housing instead of a file
 PREFIX = "axial_first_check_"  # of a folder that exists only during the checks
 MOST_SECONDS = 120
@@ -98,7 +98,7 @@ def kinds_of_ports(housing):
 def check_refine(given):
     words, kinds = [word for word in given.refine.split(",") if given.refine], kinds_of_ports(given.housing)
     for word in words:
-        if word not in REFINED and words != [ALONE]:
+        if word not in REFINED and words not in ALONE:
             raise Failure(f"--refine {given.refine}: '{word}' is not one of {', '.join(REFINED)}")
         needed = REFINED.get(word)
         if needed and kinds and needed not in kinds:
