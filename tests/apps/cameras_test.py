@@ -4,6 +4,7 @@
 import argparse
 import dataclasses
 import json
+import pathlib
 import random
 import shutil
 import sqlite3
@@ -13,7 +14,8 @@ import sys
 import unittest
 
 from pipeline_folder import InFolder
-from programs import BIN, ProgramTest, grey_png, main, read
+from programs import BIN, ProgramTest, grey_png, main, read, write
+from reconstruct_test import camera_centres
 from stand_ins import SCRIPT, StandIns
 
 from axial_pipeline import cameras, exif, features, lenses, photographs, turns
@@ -335,8 +337,11 @@ class TwoSizes(ProgramTest):
         for number in range(3):
             name = f"000{number}.jpg"
             shutil.copyfile(self.path("400", "water", name), self.path("480", "water", name))
+        images = pathlib.Path(self.path("480", "sparse", "images.txt"))
+        write(self.path("positions.txt"), "".join(camera_centres(images)))
         ended = subprocess.run(
-            [sys.executable, "-B", str(SCRIPT), "--images", self.path("480", "water"), "--lens",
+            [sys.executable, "-B", str(SCRIPT), "--scale-from", f"positions:{self.path('positions.txt')}",
+             "--images", self.path("480", "water"), "--lens",
              self.path("480", "sparse", "cameras.txt"), "--housing", self.path("480", "housing.json"), "-o",
              self.path("out"), "--until", "cloud", "--programs", BIN], capture_output=True, text=True, timeout=600)
         self.assertEqual((ended.returncode, ended.stderr), (0, ""), ended.stdout)

@@ -14,11 +14,11 @@ from programs import grey_png
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
 PHOTOGRAPH = grey_png([bytes(4)] * 3)
 # A stand-in for every program of the pipeline; its file name tells which one. It runs in the folder
-# above `out`. It appends its command line to the file `commands` and writes the files that the next
-# program reads. If there is a pipe `pipe-NAME`, the program opens it and sleeps, so that the pipe
-# closes when the program ends. With `child-pipe-NAME`, a child of the program does so.
+# above `out`. In a step, it appends its command line to the file `commands` and writes the files that
+# the next program reads. If there is a pipe `pipe-NAME`, the program opens it and sleeps, so that the
+# pipe closes when the program ends. With `child-pipe-NAME`, a child of the program does so.
 STAND_IN = """#!/bin/sh
-[ "$2" = --help ] && { echo "--SpatialMatching.is_gps "; exit; }
+case "$*" in *--help) echo "--SpatialMatching.is_gps "; exit ;; *axial_first_check_*) exit ;; esac
 name=${0##*/}
 case $1 in --version|help) echo "$name 7.8"; exit ;; esac
 echo "$name $*" >> commands

@@ -109,10 +109,13 @@ def results_of(given, out):
 
 
 def reconstruct(given):
-    check(given)
+    found = check(given)
     out = pathlib.Path(given.output)
     todo = list(steps(given, out))
     ownership.check(out, [step.name for step in todo], bool(given.cluster))
+    if given.check:
+        print(*(f"{word:12} {text}" for word, text in found), "No fault was found.", sep="\n")
+        return
     out.mkdir(parents=True, exist_ok=True)
     with only_run_in(out) as lock:
         seconds = (cluster.run_all(todo, given, out, lock) if given.cluster

@@ -6,8 +6,8 @@ import fnmatch
 import os
 import pathlib
 
-from . import (cameras, cluster, colmap, database, files, lenses, masks, matching, photographs,
-               positions)
+from . import (cameras, cluster, colmap, database, estimates, files, first_checks, lenses, masks, matching,
+               photographs, positions)
 from .failure import Failure
 from .option_files import find_option, has_option
 from .ownership import ORDER, WRITES, is_record
@@ -22,7 +22,6 @@ MORE_OPTIONS = {"features": "COLMAP's feature_extractor", "matches": "COLMAP's m
                 "map": "MapSurface", "compare": "CompareSurveys", "page": "ViewScene"}
 RESULTS = ("poses", "cloud", "mesh", "texture", "map", "page")
 SKIPPED = ("refine-mesh", "texture", "map", "page")  # steps that may be left out
-KINDS = ("flat", "dome", "unknown")  # values of --housing instead of a file
 MOST_TILES = 1000  # as in the programs
 
 
@@ -52,6 +51,8 @@ def options(script_folder, description):
                         help="lens model that COLMAP calibrates, so that it absorbs the refraction (default: COLMAP "
                         "keeps the lens that lens and port give; if photographs have no pose then, it calibrates "
                         "this lens)")
+    parser.add_argument("--check", action="store_true", help="check all inputs, print what was found and how much "
+                        "time, memory and disk space the run needs, and end")
     parser.add_argument("--keep-all", action="store_true", help="use blurred photographs, too")
     for name, program in MORE_OPTIONS.items():
         parser.add_argument(f"--{name}", default="",
@@ -233,7 +234,7 @@ def check_paths(given):
     check_lens_files(given)
     for name in ("images", "housing", "truth", "earlier", "programs"):
         path = getattr(given, name)
-        if name == "housing" and path in KINDS:
+        if name == "housing" and path in first_checks.KINDS:
             continue
         if path and not pathlib.Path(path).exists():
             raise Failure(f"--{name} {path}: not found")
@@ -249,7 +250,8 @@ def check_paths(given):
 
 
 def check(given):
-    """Checks everything that can be known before hours of work, and makes all paths absolute."""
+    """Checks everything that can be known before hours of work, and makes all paths absolute. Returns what was
+    found, for --check: pairs of a word and a text."""
     check_paths(given)
     for program in PROGRAMS:
         if not (pathlib.Path(given.programs) / program).is_file():
@@ -267,7 +269,9 @@ def check(given):
     if given.snakemake and not given.cluster:
         raise Failure(f"--snakemake {given.snakemake}: is only for --cluster")
     colmap.check_installed()
-    given.cameras, left_out = cameras.of(given, photographs.check(given.images, one_size=False))
+    lens_lines = first_checks.check_lens_and_housing(given)
+    images = photographs.check(given.images, one_size=False)
+    given.cameras, left_out = cameras.of(given, images)
     given.lines = [*cameras.lines_about(given.cameras), *left_out]
     for line in given.lines:
         print(f"{given.images}: {line}", flush=True)
@@ -279,3 +283,20 @@ def check(given):
         raise Failure(f"--output {given.output}: lies in the folder of the images")
     if given.cluster:
         cluster.check(given)
+    return found_in(given, images, lens_lines)
+
+
+def found_in(given, images, lens_lines):
+    """Checks that need the photographs and the programs. Returns what was found."""
+    used = [name for one in given.cameras for name in one.names] or list(images)
+    first_checks.check_refine(given)
+    first_checks.check_scale(given, used)
+    first_checks.check_options_of_programs(given, MORE_OPTIONS)
+    lens_lines = first_checks.check_cameras(given) if given.cameras else lens_lines
+    sizes = [images[name].size for name in used if images[name].size]
+    if not sizes:
+        return []
+    needs = estimates.needs_of(given, sizes)
+    for line in estimates.warnings_about(needs, pathlib.Path(given.output)):
+        print(f"warning: {line}", flush=True)
+    return list(first_checks.rows(given, images, lens_lines, needs))
