@@ -103,6 +103,16 @@ class Features(Databases):
                          {"clear.jpg": 3000, "hazy.jpg": 2500})
         self.assertEqual(list(self.folder.glob("weak_features*")), [])
 
+    def test_weak_features_do_not_hide_blur(self):
+        # Noise and traces of JPEG make fine features, but only weak ones.
+        file = self.database({f"{i}.jpg": (3000, SHARP) for i in range(4)} | {"blurred.jpg": (25, BLURRED)})
+        self.assertEqual(self.said(features.take_weak_features, file, None, self.folder), "")
+        self.assertIn("blurred.jpg", self.said(features.leave_out_blurred, file))
+
+    def test_a_handful_of_features_tells_no_blur(self):
+        file = self.database({f"{i}.jpg": (3000, SHARP) for i in range(4)} | {"hazy.jpg": (5, BLURRED)})
+        self.assertEqual(features.blurred(database.features(file))[0], {})
+
     def test_nothing_is_added_to_many_features(self):
         file = self.database({"clear.jpg": (3000, SHARP)})
         self.assertEqual(self.said(features.take_weak_features, file, None, self.folder), "")

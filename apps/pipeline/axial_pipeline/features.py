@@ -12,17 +12,21 @@ WEAK = 0.001         # the threshold of weak features; COLMAP's own is 0.0067
 SCARCE = 300         # features that are few even so
 BLURRED = 2          # times the finest features of the other photographs, at least
 LEAST_BLUR = 1.8     # finest features of a blurred photograph [px]; sharp ones have 0.93
+JUDGED = 20          # features that tell blur; a photograph with fewer counts as sharp
 MOST_BLURRED = 0.5   # if more of the photographs are blurred, none counts as blurred
 LOW = "weak_features.db"
 
 
 def take_weak_features(features, command_of, out):
-    """Adds weak features to the photographs that have few. `features`: COLMAP's database. `command_of`:
-    the detector's command by database, file with names of photographs, and threshold."""
+    """Adds weak features to the photographs that have few, except blurred ones: their weak features are noise
+    and traces of JPEG, which are as fine as the features of sharp photographs and would hide the blur.
+    `features`: COLMAP's database. `command_of`: the detector's command by database, file with names of
+    photographs, and threshold."""
     found = database.features(features)
     if found is None:
         return
-    wanted = [name for name, one in found.items() if one.count < ENOUGH]
+    names_of_blurred, _ = blurred(found)
+    wanted = [name for name, one in found.items() if one.count < ENOUGH and name not in names_of_blurred]
     if not wanted:
         return
     low, names = out / LOW, out / "weak_features.txt"
@@ -43,12 +47,11 @@ def take_weak_features(features, command_of, out):
 def blurred(found):
     """The names of photographs that are clearly blurred beside the others, with the scale [px] of their
     finest features, and the scale of the others."""
-    scales = [one.fine for one in found.values() if one.count]
-    if not scales:
+    judged = {name: one.fine for name, one in found.items() if one.count >= JUDGED}
+    if not judged:
         return {}, 0
-    usual = statistics.median(scales)
-    names = {name: one.fine for name, one in found.items()
-             if one.count and one.fine > max(LEAST_BLUR, BLURRED * usual)}
+    usual = statistics.median(judged.values())
+    names = {name: fine for name, fine in judged.items() if fine > max(LEAST_BLUR, BLURRED * usual)}
     return (names if len(names) <= MOST_BLURRED * len(found) else {}), usual
 
 
