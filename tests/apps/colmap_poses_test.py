@@ -5,6 +5,7 @@ import argparse
 import contextlib
 import io
 import random
+import shutil
 import sqlite3
 import struct
 import unittest.mock
@@ -162,6 +163,17 @@ class Poses(Databases):
         self.assertIn("3 of 4 photographs have poses", said)
         self.assertIn("d.jpg: 12 features", said)
         self.assertEqual(colmap.names_in(self.folder / "colmap" / "best"), set(self.NAMES[:3]))
+
+    def test_photographs_that_were_left_out_are_counted_and_named(self):
+        self.database({**dict.fromkeys(self.NAMES, (2000, SHARP)), "e.jpg": (2000, BLURRED)})
+        file = self.folder / "database.db"
+        shutil.copyfile(self.folder / "features.db", file)
+        features.leave_out_blurred(file)
+        self.model(self.folder / "colmap" / "0", self.NAMES)
+        said = self.said(poses.take_best, file, self.given(), self.folder, [])
+        self.assertEqual(said.splitlines(), ["    4 of 5 photographs have poses",
+                                             "    warning: 1 photographs have no pose",
+                                             "    no pose: e.jpg: blurred, and left out"])
 
     def test_a_lens_that_ran_away_is_refused(self):
         self.model(self.folder / "colmap" / "0", self.NAMES[:2])
