@@ -149,6 +149,8 @@ class WithStandIns(StandIns):
             self.assertEqual(done_before(), kept, option)
         positions.write_text(positions.read_text() + "\n")
         self.assertEqual(done_before(), 4)
+        options.append("--keep-all")
+        self.assertEqual(done_before(), 2)
         options += ["--matcher", "spatial"]
         self.assertEqual(done_before(), 2)
         command = (self.folder / "commands").read_text().splitlines()[-9]

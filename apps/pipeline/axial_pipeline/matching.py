@@ -75,9 +75,9 @@ def more_options(given):
             "--SpatialMatching.max_distance", FARTHEST]
 
 
-def step(given, features, database, prepare=lambda: None, reads=()):
+def step(given, features, database, prepare=lambda: None, reads=(), settings=()):
     """The step that copies the database `features` to `database` and adds matches. `prepare`: called before
-    photographs are matched. `reads`: what it reads."""
+    photographs are matched. `reads`: what it reads. `settings`: words that say what `prepare` does."""
     file = positions.file_of(given.scale_from) if given.matcher == "spatial" else None
     reads = [path for path in (file, given.vocabulary, *reads) if path]
 
@@ -93,7 +93,8 @@ def step(given, features, database, prepare=lambda: None, reads=()):
 
     return Step("matches", colmap.matches(database, given.matcher, 
                                          more=[*more_options(given), *words_of("matches", given)]),
-                makes=database, reads=reads, changed=colmap.database_files(database), before=before)
+                makes=database, reads=reads, changed=colmap.database_files(database), before=before,
+                settings=settings)
 
 
 def prepare_positions(database, file):

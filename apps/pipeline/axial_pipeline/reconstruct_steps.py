@@ -80,7 +80,8 @@ def colmap_steps(given, out):
                    makes=out / start_lens.FILE, reads=[*lens_files(given), given.housing],
                    before=lambda: write_cameras(given, out))
     yield matching.step(given, found, file, lambda: prepare_matches(given, file, out),
-                        reads=lens_files(given) if given.lens_model else [out / start_lens.FILE])
+                        reads=lens_files(given) if given.lens_model else [out / start_lens.FILE],
+                        settings=["--keep-all"] if given.keep_all else [])
     refine = None if given.lens_model else False
     yield Step("poses", colmap.mapper(file, given.images, models, refine, more=more), makes=models / "best",
                anew=[models], before=models.mkdir, excuse=colmap.NO_MODEL,

@@ -24,10 +24,11 @@ class Step:
     the command continues with them. `before`, `after`: functions, called before the command and
     after its success. `writes`: what the record says that the step may write or remove, as in
     ownership.WRITES. `excuse`: a text by which the command says that it found nothing, after which
-    the step goes on."""
+    the step goes on. `settings`: words that say what `before` and `after` do, where neither the command
+    nor a file that the step reads says it."""
 
     def __init__(self, name, command, makes, reads=(), anew=(), changed=(), before=lambda: None,
-                 after=lambda: None, writes=(), excuse=None):
+                 after=lambda: None, writes=(), excuse=None, settings=()):
         self.name = name
         self.command = [str(word) for word in command]
         self.makes = makes
@@ -38,14 +39,15 @@ class Step:
         self.after = after
         self.writes = list(writes)
         self.excuse = excuse
+        self.settings = list(settings)
 
     def fingerprint(self):
-        """Names, sizes and times of change of all files that the step reads."""
+        """The settings, and names, sizes and times of change of all files that the step reads."""
         found = []
         for path in self.reads:
             found += files.below(path) if path.is_dir() else [path]
-        return [[str(file), file.stat().st_size, file.stat().st_mtime_ns]
-                for file in found if file.is_file()]
+        return [*self.settings, *([str(file), file.stat().st_size, file.stat().st_mtime_ns]
+                                  for file in found if file.is_file())]
 
 
 class Files:
