@@ -4,6 +4,7 @@
 
 #include "io/cameras/port_sigmas.h"
 #include "private/cameras/port_json.h"
+#include "private/only_for_io.h"
 
 namespace axial::io {
 
