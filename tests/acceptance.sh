@@ -15,5 +15,5 @@ cmake --build --preset release --target InterfaceCOLMAP DensifyPointCloud Simula
   EvaluateReconstruction AlignModel RefinePoses ReconstructMesh RefineMesh TextureMesh \
   MapSurface CompareSurveys TransformScene ViewScene CalibrateHousing ReproducePaper \
   map_check change_check held_out_check seam_check unseen_check static_overlay \
-  drawn_boards matching_benchmark
+  drawn_boards dive_photograph matching_benchmark
 exec python3 tests/acceptance/acceptance.py "$@"

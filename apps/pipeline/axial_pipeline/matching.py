@@ -91,7 +91,7 @@ def step(given, features, database, prepare=lambda: None, reads=(), settings=())
                 raise Failure(f"{features}: is not a database of COLMAP, or is damaged ({error}); remove "
                               "it, and the same command makes it again") from None
 
-    return Step("matches", colmap.matches(database, given.matcher, 
+    return Step("matches", colmap.matches(database, given.matcher,
                                          more=[*more_options(given), *words_of("matches", given)]),
                 makes=database, reads=reads, changed=colmap.database_files(database), before=before,
                 settings=settings)

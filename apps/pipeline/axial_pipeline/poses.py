@@ -4,7 +4,7 @@
 import json
 import struct
 
-from . import colmap, database, files
+from . import colmap, database, files, lenses
 from .photographs import few
 from .running import logged
 
@@ -13,21 +13,11 @@ FREE = "free_lens"          # folder of the models with a lens that COLMAP calib
 FOCAL = (0.7, 1.5)          # the focal length that COLMAP may find, in focal lengths of the start
 FEW_FEATURES, FEW_MATCHES = 300, 30
 BLURRED = "blurred, and left out"
-PARAMETERS = {0: 3, 1: 4, 2: 4, 3: 5, 4: 8, 5: 8, 6: 12, 7: 5, 8: 4, 9: 5, 10: 12}  # by id of COLMAP's model
 
 
 def focal_lengths(model):
     """The focal lengths of the cameras of a binary model, by id. Empty if the file is damaged."""
-    try:
-        data = (model / "cameras.bin").read_bytes()
-        count, at, found = struct.unpack_from("<Q", data)[0], 8, {}
-        for _ in range(count):
-            camera, kind, _, _ = struct.unpack_from("<iiQQ", data, at)
-            found[camera] = struct.unpack_from("<d", data, at + 24)[0]
-            at += 24 + 8 * PARAMETERS[kind]
-        return found
-    except (OSError, struct.error, LookupError):
-        return {}
+    return {lens.number: lens.parameters[0] for lens in lenses.in_file(model / "cameras.bin")}
 
 
 def starts(file):
