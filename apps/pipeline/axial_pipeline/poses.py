@@ -44,17 +44,15 @@ def scale_names(given):
     return set(words.replace('"', "").split(",")) if kind == "images" else set()
 
 
-class Candidates:
-    """The models of one or two runs of the mapper, the best first: with the most photographs, of two with
-    equally many the one that has the photographs of --scale-from."""
-
-    def __init__(self, folders, given):
-        wanted = scale_names(given)
-        found = [(colmap.registered(model), len(wanted & colmap.names_in(model)), -number, model)
-                 for number, folder in enumerate(folders) if folder.is_dir()
-                 for model in sorted(folder.iterdir()) if colmap.is_model(model)]
-        self.models = [(model, count) for count, _, _, model in
-                       sorted(found, key=lambda one: one[:3], reverse=True)]
+def best_first(folders, given):
+    """The models in the folders of one or two runs of the mapper, each with its number of photographs: first
+    the one with the most photographs, of two with equally many the one that has the photographs of
+    --scale-from."""
+    wanted = scale_names(given)
+    found = [(colmap.registered(model), len(wanted & colmap.names_in(model)), -number, model)
+             for number, folder in enumerate(folders) if folder.is_dir()
+             for model in sorted(folder.iterdir()) if colmap.is_model(model)]
+    return [(model, count) for count, _, _, model in sorted(found, key=lambda one: one[:3], reverse=True)]
 
 
 def try_free_lens(file, given, models, options, log):
@@ -78,12 +76,12 @@ def take_best(file, given, out, options):
     names, models = database.names(file), out / "colmap"
     photographs = sorted(names.values()) if names else []
     blurred = left_out_before(out, photographs) if names else []
-    first = Candidates([models], given).models
+    first = best_first([models], given)
     if not given.lens_model and (not first or first[0][1] < len(photographs)):
         count = f"{first[0][1]} of {len(photographs)} photographs have" if first else "no photograph has"
         print(f"    {count} poses with the lens behind the port; COLMAP tries to calibrate a lens", flush=True)
         try_free_lens(file, given, models, options, out / "logs" / "poses-free.log")
-    found = Candidates([models, models / FREE], given).models
+    found = best_first([models, models / FREE], given)
     if not found:
         raise colmap.no_poses(out / "logs" / "poses.log")
     best, count = found[0]
