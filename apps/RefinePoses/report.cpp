@@ -28,6 +28,17 @@ nlohmann::ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
+nlohmann::ordered_json json_of(const Registered& registered) {
+  using Json = nlohmann::ordered_json;
+  Json json{{"photographs", registered.names},
+            {"left_out", Json::array()},
+            {"observations", registered.observations},
+            {"points", registered.points}};
+  for (const Unregistered& one : registered.left_out)
+    json["left_out"].push_back({{"name", one.name}, {"reason", one.reason}});
+  return json;
+}
+
 // The uncertainty before standard deviations are computed: only the noise is known.
 pose::Uncertainty not_computed(const Results& results) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -95,6 +106,7 @@ std::string report_json(const Results& results, const pose::Uncertainty* known) 
   json["scale_sigma"] = finite_or_null(scale_sigma(results, uncertainty.scale_sigma));
   if (!known) json["standard_deviations"] = "missing";
   if (!results.unused.empty()) json["unused"] = results.unused;
+  if (results.registered) json["registered"] = json_of(*results.registered);
   for (const ImageErrors& image : results.images)
     json["images"].push_back({{"name", image.name},
                               {"observations", image.observations},

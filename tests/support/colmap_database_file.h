@@ -2,6 +2,7 @@
 // Writes databases as COLMAP 3.8 does.
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
