@@ -19,6 +19,7 @@
 #include "io/cameras/other_ports.h"
 #include "io/colmap/colmap.h"
 #include "io/colmap/colmap_scene.h"
+#include "left_out.h"
 #include "options.h"
 #include "pose/colmap_bundle.h"
 #include "pose/freed_check.h"
@@ -99,7 +100,7 @@ io::Housing load_housing(const Options& options, const io::ColmapModel& model,
 
 // The input files: an output must not replace one.
 std::vector<fs::path> inputs_of(const Options& options, const fs::path& model) {
-  std::vector<fs::path> inputs{options.housing};
+  std::vector<fs::path> inputs{options.housing, options.database};
   constexpr std::string_view kPositions = "positions:";
   if (options.scale_from.starts_with(kPositions))
     inputs.push_back(options.parsed.common.working_folder /
@@ -302,6 +303,19 @@ void write(const Options& options, const pose::ColmapBundle& refined, const Inpu
                                        option_of));
 }
 
+<<<<<<< HEAD
+=======
+// A model, its lenses in air and its ports.
+struct Input {
+  fs::path folder;  // of the model
+  io::ColmapModel model;
+  LocalFrame frame;  // of the model
+  LensesInAir lenses;
+  io::Housing housing;
+  std::optional<LeftOutPhotographs> left_out;  // with --database: photographs without a pose
+};
+
+>>>>>>> register-unfinished
 Input read_input(const Options& options) {
   Input input;
   input.folder = io::find_colmap_model(options.model);
@@ -311,6 +325,8 @@ Input read_input(const Options& options) {
   input.frame = io::enter_local_frame(input.model);
   input.lenses = load_lenses(options, input.model);
   warn_of_other_lenses(options, input.model, input.lenses);
+  if (!options.database.empty())
+    input.left_out = add_left_out(options.database, input.lenses, input.model);
   input.housing = load_housing(options, input.model, input.lenses);
   return input;
 }
@@ -383,7 +399,8 @@ bool warn_of_other_kind(const Options& options, const pose::Bundle& before) {
 
 // Tells the errors, checks the result, and writes it. `frame`: of the refined bundle.
 void finish(const Options& options, const Input& input, const pose::ColmapBundle& refined,
-            const Refined& done, const UnusedInput& unused, const LocalFrame& frame) {
+            const Refined& done, const UnusedInput& unused, const LocalFrame& frame,
+            const std::optional<Registered>& registered) {
   const bool scale_lost = !unused.lines().empty();
   if (scale_lost) log_warning("The model has no scale: --scale-from is not used");
   Results results{done.report,
@@ -398,6 +415,7 @@ void finish(const Options& options, const Input& input, const pose::ColmapBundle
   for (const std::string& line : options.dropped_positions)
     results.unused.push_back("--scale-from: " + line);
   warn(done.report, refined.bundle, options.refine, results.unused);
+  if (registered) results.registered = &*registered;
   results.is_other_kind = warn_of_other_kind(options, done.before);
   write(options, refined, input, frame, results);
 }
@@ -416,6 +434,32 @@ pose::PortKind likely_kind(pose::Bundle bundle, const pose::AdjustOptions& adjus
   return kind;
 }
 
+// Gives poses to photographs that COLMAP left out, and changes the model in `input`. Known
+// positions are not used yet.
+Registered register_left_out(const Options& options, Input& input) {
+  pose::Bundle bundle = load(options, input.model, input.lenses, input.housing).bundle;
+  pose::RefineOptions refining = options.refine;
+  refining.adjust.distances = known_lengths(options.scale_from, options.scale_sigma, bundle);
+  if (options.usual_housing == "unknown") {
+    pose::bring_to_metres(bundle, refining.adjust);
+    if (pose::better_kind(pose::fits_of_kinds(bundle, refining.adjust)))
+      bundle = load(options, input.model, input.lenses, usual_housing(pose::PortKind::dome)).bundle;
+  }
+  pose::set_free_numbers(options.refine_list, options.sigmas, bundle, refining.adjust, option_of);
+  log_info("{}: seeks poses of {} photographs without a pose among {} with poses",
+           options.database.string(), input.model.images.size() - input.left_out->first,
+           input.left_out->first);
+  Registered registered = naming(options.model, [&] {
+    return register_left_out(input.model, *input.left_out, std::move(bundle), refining,
+                             [](const std::string& line) { log_info("Registering: {}", line); });
+  });
+  input.left_out.reset();
+  const RegisteredLines lines = lines_about(registered);
+  for (const std::string& line : lines.infos) log_info("{}", line);
+  for (const std::string& line : lines.warnings) log_warning("{}", line);
+  return registered;
+}
+
 int run_effective_lens(const Options& options) {
   const std::vector<fs::path> inputs{options.lens, options.housing};
   require_not_an_input(options.effective_lens, inputs, "--effective-lens");
@@ -431,6 +475,9 @@ int run(int argc, char** argv) {
   const ThreadLimit threads(options.parsed.common.max_threads);
   if (!options.effective_lens.empty()) return run_effective_lens(options);
   Input input = read_input(options);
+  check_output(options, input.folder);
+  std::optional<Registered> registered;
+  if (input.left_out) registered = register_left_out(options, input);
   pose::ColmapBundle refined = load(options, input.model, input.lenses, input.housing);
   check_ports(options, input, refined.bundle);
   UnusedInput unused(options.allow_missing);
@@ -441,11 +488,14 @@ int run(int argc, char** argv) {
     refined = load(options, input.model, input.lenses, input.housing);
     frame = set_known(options, refined.bundle, input.frame, unused);
   }
-  check_output(options, input.folder);
   say_input(input, refined);
   const Refined done = refine_or_without_scale(options, refined, input, unused, frame);
+<<<<<<< HEAD
   options.refine.adjust.positions = done.report.positions;
   finish(options, input, refined, done, unused, frame);
+=======
+  finish(options, input, refined, done, unused, frame, registered);
+>>>>>>> register-unfinished
   return 0;
 }
 

@@ -15,13 +15,13 @@ namespace {
 
 // The options as text, before they are checked.
 struct Texts {
-  std::string input, lens, housing, output, effective_lens;
+  std::string input, lens, housing, output, effective_lens, database;
 };
 
 void check_effective_lens(const Options& options) {
   if (!(options.scene_distance > 0 && std::isfinite(options.scene_distance)))
     fail("--scene-distance {}: must be positive", options.scene_distance);
-  for (const char* other : {"input-file", "output-folder", "scale-from", "refine"})
+  for (const char* other : {"input-file", "output-folder", "scale-from", "refine", "database"})
     if (given(options.parsed, other))
       fail("--effective-lens {}: contradicts --{}", options.effective_lens.string(), other);
   if (options.lens.empty()) fail("--lens is missing: the lens calibrated in air");
@@ -45,7 +45,14 @@ void check(const Options& options) {
   if (options.poses == "known" && !options.scale_from.empty())
     fail("--scale-from {}: contradicts --poses known, which means that the model is in metres",
          options.scale_from);
+<<<<<<< HEAD
   if (options.scale_from.empty() && options.scale_sigma.given)
+=======
+  if (options.poses == "known" && !options.database.empty())
+    fail("--database {}: contradicts --poses known: photographs without a pose have no known pose",
+         options.database.string());
+  if (options.scale_from.empty() && given(options.parsed, "scale-sigma"))
+>>>>>>> register-unfinished
     fail("--scale-sigma {}: is the standard deviation of --scale-from, which is missing",
          options.scale_sigma.metres);
   if (options.output.empty()) fail("--output-folder is missing");
@@ -67,6 +74,9 @@ void declare_files(OptionList& visible, Texts& texts, Options& options) {
            "correct")
       .add("output-folder,o", &texts.output,
            "folder for sparse/ (COLMAP text, lens in air), housing.json and report.json")
+      .add("database", &texts.database,
+           "COLMAP's database of these photographs: photographs to which COLMAP gave no pose get "
+           "one if their matches determine it, and tracks are completed")
       .add("effective-lens", &texts.effective_lens,
            "instead of refining poses, write this cameras.txt: the single lens that images nearly "
            "as "
@@ -149,6 +159,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   else
     options.housing = in_working_folder(common, texts.housing);
   options.output = folder_in_working_folder(common, texts.output, "--output-folder");
+  options.database = in_working_folder(common, texts.database);
   options.effective_lens =
       texts.effective_lens.empty()
           ? std::filesystem::path()

@@ -14,11 +14,12 @@ namespace axial::apps {
 
 struct Options {
   ParsedOptions parsed;
-  std::filesystem::path model;    // COLMAP folder
-  std::filesystem::path lens;     // COLMAP cameras in air: a file or a model's folder
-  std::filesystem::path housing;  // housing file; empty if usual_housing is not
-  std::string usual_housing;      // "flat", "dome" or "unknown" instead of a file; else empty
-  std::filesystem::path output;   // output folder
+  std::filesystem::path model;     // COLMAP folder
+  std::filesystem::path lens;      // COLMAP cameras in air: a file or a model's folder
+  std::filesystem::path housing;   // housing file; empty if usual_housing is not
+  std::string usual_housing;       // "flat", "dome" or "unknown" instead of a file; else empty
+  std::filesystem::path output;    // output folder
+  std::filesystem::path database;  // COLMAP's; empty: photographs without a pose stay out
   std::filesystem::path effective_lens;  // file; empty: refines poses
   double scene_distance = 2;             // of effective_lens [m]
   bool underwater = false;               // also write the model for COLMAP-Underwater

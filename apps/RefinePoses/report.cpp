@@ -44,6 +44,7 @@ nlohmann::ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
+<<<<<<< HEAD
 // null: not measured.
 nlohmann::ordered_json positive_or_null(double value) {
   return value > 0 ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
@@ -53,6 +54,17 @@ nlohmann::ordered_json positive_or_null(double value) {
 nlohmann::ordered_json decided_by(const pose::FreeValue& value, bool computed) {
   if (!computed) return nullptr;
   return value.by_photographs() ? "photographs" : "stated value";
+=======
+nlohmann::ordered_json json_of(const Registered& registered) {
+  using Json = nlohmann::ordered_json;
+  Json json{{"photographs", registered.names},
+            {"left_out", Json::array()},
+            {"observations", registered.observations},
+            {"points", registered.points}};
+  for (const Unregistered& one : registered.left_out)
+    json["left_out"].push_back({{"name", one.name}, {"reason", one.reason}});
+  return json;
+>>>>>>> register-unfinished
 }
 
 // The uncertainty before standard deviations are computed: only the noise is known.
@@ -140,6 +152,7 @@ std::string report_json(const Results& results, const pose::Uncertainty* known) 
   if (Json positions = positions_json(report); !positions.is_null())
     json["positions"] = std::move(positions);
   if (!results.unused.empty()) json["unused"] = results.unused;
+  if (results.registered) json["registered"] = json_of(*results.registered);
   for (const ImageErrors& image : results.images)
     json["images"].push_back({{"name", image.name},
                               {"observations", image.observations},

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "left_out.h"
 #include "pose/refine.h"
 
 namespace axial::apps {
@@ -30,7 +31,8 @@ struct Results {
   // input. In this case the scale is reported as not known, even if refraction determines it.
   std::vector<std::string> unused;
   bool scale_lost = false;
-  bool is_other_kind = false;  // the photographs fit another kind of port better
+  bool is_other_kind = false;              // the photographs fit another kind of port better
+  const Registered* registered = nullptr;  // with --database
 };
 
 // Returns the table of errors as lines for the log.

@@ -226,4 +226,16 @@ std::vector<std::string> add_known(const std::string& scale_from, const ScaleSig
   return {};
 }
 
+std::vector<pose::KnownDistance> known_lengths(const std::string& scale_from, double sigma,
+                                               const pose::Bundle& bundle) {
+  if (scale_from.empty() || scale_from.starts_with("positions:")) return {};
+  pose::AdjustOptions adjust;
+  try {
+    add(scale_from, sigma, {}, bundle, adjust);
+  } catch (const NoUse&) {
+    return {};
+  }
+  return adjust.distances;
+}
+
 }  // namespace axial::apps

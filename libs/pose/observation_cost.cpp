@@ -8,12 +8,6 @@
 namespace axial::pose {
 namespace {
 
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 Eigen::Matrix3d rotation_of(const Eigen::Vector3d& w) {
   const double angle = w.norm();
   if (angle == 0) return Eigen::Matrix3d::Identity();
@@ -31,6 +25,12 @@ template <int Columns>
 using RowMajor = Eigen::Map<Eigen::Matrix<double, 2, Columns, Eigen::RowMajor>>;
 
 }  // namespace
+
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
 
 PoseNumbers numbers_of(const Pose& start) {
   return {0, 0, 0, start.centre.x(), start.centre.y(), start.centre.z()};

@@ -24,6 +24,9 @@ using PoseNumbers = std::array<double, kPoseNumbers>;
 PoseNumbers numbers_of(const Pose& start);
 Pose pose_with(const Pose& start, const PoseNumbers& numbers);
 
+// The matrix M of a cross product: M u = v x u for every vector u.
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v);
+
 // The left Jacobian J of the rotation group at the rotation vector w [rad]. For every vector v,
 // d(exp([w]x) v)/dw = -[exp([w]x) v]x J.
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& w);

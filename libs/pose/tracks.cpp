@@ -23,8 +23,7 @@ std::vector<Ray> world_rays(const Bundle& bundle) {
   const auto set_ray = [&](std::size_t i) {
     const Observation& observation = bundle.observations[i];
     const BundleImage& image = bundle.images[observation.image];
-    const Ray ray = cameras[image.camera].ray(observation.pixel);
-    rays[i] = {image.pose.to_world(ray.origin), image.pose.rotation.transpose() * ray.direction};
+    rays[i] = world_ray(cameras[image.camera], image.pose, observation.pixel);
   };
   parallel_for(rays.size(), set_ray, kPointGrain);
   return rays;
@@ -37,14 +36,10 @@ std::vector<std::vector<std::size_t>> observations_by_point(const Bundle& bundle
   return lists;
 }
 
-// The largest angle [rad] between any two rays of the list.
-double widest_angle(std::span<const std::size_t> list, const std::vector<Ray>& rays) {
-  double smallest_cosine = 1;
-  for (std::size_t i = 0; i < list.size(); ++i)
-    for (std::size_t j = i + 1; j < list.size(); ++j)
-      smallest_cosine =
-          std::min(smallest_cosine, rays[list[i]].direction.dot(rays[list[j]].direction));
-  return std::acos(std::clamp(smallest_cosine, -1.0, 1.0));
+std::vector<Ray> rays_of(std::span<const std::size_t> list, const std::vector<Ray>& rays) {
+  std::vector<Ray> own;
+  for (const std::size_t observation : list) own.push_back(rays[observation]);
+  return own;
 }
 
 // Observations and their rays, in the same order.
@@ -87,7 +82,8 @@ bool seen_by_two_images(std::span<const std::size_t> list, const Bundle& bundle)
 void drop_weak_points(Bundle& bundle, Seen& seen, double min_angle) {
   std::vector<bool> kept;
   for (const auto& list : observations_by_point(bundle))
-    kept.push_back(seen_by_two_images(list, bundle) && widest_angle(list, seen.rays) >= min_angle);
+    kept.push_back(seen_by_two_images(list, bundle) &&
+                   widest_angle(rays_of(list, seen.rays)) >= min_angle);
   drop_points(bundle, seen, kept);
 }
 
@@ -99,6 +95,19 @@ void drop_weak_images(const Bundle& bundle, Seen& seen, std::size_t min_observat
 }
 
 }  // namespace
+
+Ray world_ray(const PhotographCamera& camera, const Pose& pose, const Eigen::Vector2d& pixel) {
+  const Ray ray = camera.ray(pixel);
+  return {pose.to_world(ray.origin), pose.rotation.transpose() * ray.direction};
+}
+
+double widest_angle(std::span<const Ray> rays) {
+  double smallest_cosine = 1;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    for (std::size_t j = i + 1; j < rays.size(); ++j)
+      smallest_cosine = std::min(smallest_cosine, rays[i].direction.dot(rays[j].direction));
+  return std::acos(std::clamp(smallest_cosine, -1.0, 1.0));
+}
 
 std::optional<Eigen::Vector3d> triangulate(std::span<const Ray> rays) {
   const auto equations = refractive::nearest_point_equations(rays);

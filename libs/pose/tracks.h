@@ -15,6 +15,14 @@ namespace axial::pose {
 // a ray. Precondition: all rays are in one frame.
 std::optional<Eigen::Vector3d> triangulate(std::span<const refractive::AxialRay<double>> rays);
 
+// The ray of `pixel` in an image at `pose`, in the frame of the poses. NaN if the pixel is the
+// image of no direction.
+refractive::AxialRay<double> world_ray(const PhotographCamera& camera, const Pose& pose,
+                                       const Eigen::Vector2d& pixel);
+
+// The largest angle [rad] between any two of the rays. 0 for fewer than two rays.
+double widest_angle(std::span<const refractive::AxialRay<double>> rays);
+
 // Triangulates all points from the rays of their observations. Observations whose pixel is the
 // image of no direction are not used. A point for which triangulate(rays) returns nothing keeps its
 // position.
