@@ -46,6 +46,7 @@ struct Input {
   LocalFrame frame;  // of the model
   LensesInAir lenses;
   io::Housing housing;
+  std::optional<LeftOutPhotographs> left_out;  // with --database: photographs without a pose
 };
 
 // The lenses in air: from the file, or from the model if its cameras carry ports.
@@ -303,19 +304,6 @@ void write(const Options& options, const pose::ColmapBundle& refined, const Inpu
                                        option_of));
 }
 
-<<<<<<< HEAD
-=======
-// A model, its lenses in air and its ports.
-struct Input {
-  fs::path folder;  // of the model
-  io::ColmapModel model;
-  LocalFrame frame;  // of the model
-  LensesInAir lenses;
-  io::Housing housing;
-  std::optional<LeftOutPhotographs> left_out;  // with --database: photographs without a pose
-};
-
->>>>>>> register-unfinished
 Input read_input(const Options& options) {
   Input input;
   input.folder = io::find_colmap_model(options.model);
@@ -490,12 +478,8 @@ int run(int argc, char** argv) {
   }
   say_input(input, refined);
   const Refined done = refine_or_without_scale(options, refined, input, unused, frame);
-<<<<<<< HEAD
   options.refine.adjust.positions = done.report.positions;
-  finish(options, input, refined, done, unused, frame);
-=======
   finish(options, input, refined, done, unused, frame, registered);
->>>>>>> register-unfinished
   return 0;
 }
 

@@ -44,7 +44,6 @@ nlohmann::ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
-<<<<<<< HEAD
 // null: not measured.
 nlohmann::ordered_json positive_or_null(double value) {
   return value > 0 ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
@@ -54,7 +53,8 @@ nlohmann::ordered_json positive_or_null(double value) {
 nlohmann::ordered_json decided_by(const pose::FreeValue& value, bool computed) {
   if (!computed) return nullptr;
   return value.by_photographs() ? "photographs" : "stated value";
-=======
+}
+
 nlohmann::ordered_json json_of(const Registered& registered) {
   using Json = nlohmann::ordered_json;
   Json json{{"photographs", registered.names},
@@ -64,7 +64,6 @@ nlohmann::ordered_json json_of(const Registered& registered) {
   for (const Unregistered& one : registered.left_out)
     json["left_out"].push_back({{"name", one.name}, {"reason", one.reason}});
   return json;
->>>>>>> register-unfinished
 }
 
 // The uncertainty before standard deviations are computed: only the noise is known.
