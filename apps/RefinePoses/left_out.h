@@ -26,6 +26,11 @@ struct LeftOutPhotographs {
   std::size_t first = 0;
   std::vector<Unregistered> unusable;  // photographs that are not in the model: without a lens
   pose::FeatureMatches matches{{}};    // of all images of the model
+
+  // Whether a photograph of the database has no pose in `model`, the result of add_left_out().
+  bool any(const io::ColmapModel& model) const {
+    return first < model.images.size() || !unusable.empty();
+  }
 };
 
 // Adds the photographs of the database that `model` does not have, with their features and cameras.

@@ -433,7 +433,8 @@ Registered register_left_out(const Options& options, Input& input) {
     if (pose::better_kind(pose::fits_of_kinds(bundle, refining.adjust)))
       bundle = load(options, input.model, input.lenses, usual_housing(pose::PortKind::dome)).bundle;
   }
-  pose::set_free_numbers(options.refine_list, options.sigmas, bundle, refining.adjust, option_of);
+  pose::set_estimated_numbers(options.refine_list, options.sigmas, bundle, refining.adjust,
+                              option_of);
   log_info("{}: seeks poses of {} photographs without a pose among {} with poses",
            options.database.string(), input.model.images.size() - input.left_out->first,
            input.left_out->first);
@@ -465,7 +466,9 @@ int run(int argc, char** argv) {
   Input input = read_input(options);
   check_output(options, input.folder);
   std::optional<Registered> registered;
-  if (input.left_out) registered = register_left_out(options, input);
+  // With poses of all photographs, the tracks are those of COLMAP.
+  if (input.left_out && input.left_out->any(input.model))
+    registered = register_left_out(options, input);
   pose::ColmapBundle refined = load(options, input.model, input.lenses, input.housing);
   check_ports(options, input, refined.bundle);
   UnusedInput unused(options.allow_missing);

@@ -226,7 +226,8 @@ std::vector<std::string> add_known(const std::string& scale_from, const ScaleSig
   return {};
 }
 
-std::vector<pose::KnownDistance> known_lengths(const std::string& scale_from, double sigma,
+std::vector<pose::KnownDistance> known_lengths(const std::string& scale_from,
+                                               const ScaleSigma& sigma,
                                                const pose::Bundle& bundle) {
   if (scale_from.empty() || scale_from.starts_with("positions:")) return {};
   pose::AdjustOptions adjust;

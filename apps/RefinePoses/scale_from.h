@@ -49,7 +49,7 @@ std::vector<std::string> add_known(const std::string& scale_from, const ScaleSig
 
 // The known lengths of `scale_from`, as add_known() adds them, without messages. Empty if there are
 // none or if they cannot be used.
-std::vector<pose::KnownDistance> known_lengths(const std::string& scale_from, double sigma,
-                                               const pose::Bundle& bundle);
+std::vector<pose::KnownDistance> known_lengths(const std::string& scale_from,
+                                               const ScaleSigma& sigma, const pose::Bundle& bundle);
 
 }  // namespace axial::apps

@@ -4,6 +4,7 @@
 import argparse
 import contextlib
 import io
+import json
 import random
 import shutil
 import sqlite3
@@ -155,7 +156,7 @@ class Poses(Databases):
         self.model(self.folder / "colmap" / "0", self.NAMES)
         said = self.best(self.given(), lambda folder: self.fail("tried again"))
         self.assertEqual(said, "    4 of 4 photographs have poses\n")
-        self.assertEqual(list(poses.lines_about(self.folder)), [])
+        self.assertEqual(poses.lines_about(self.folder), ["4 of 4 photographs have poses"])
 
     def test_the_try_with_more_photographs_is_kept(self):
         self.model(self.folder / "colmap" / "0", self.NAMES[:2])
@@ -174,6 +175,19 @@ class Poses(Databases):
         self.assertEqual(said.splitlines(), ["    4 of 5 photographs have poses",
                                              "    warning: 1 photographs have no pose",
                                              "    no pose: e.jpg: blurred, and left out"])
+
+    def test_photographs_that_got_a_pose_later_count(self):
+        self.model(self.folder / "colmap" / "0", self.NAMES[:2])
+        self.best(self.given(lens_model="OPENCV"))
+        self.assertEqual(poses.lines_about(self.folder)[0], "2 of 4 photographs have poses")
+        self.said(poses.print_changes, self.folder)
+        (self.folder / "refined").mkdir()
+        (self.folder / "refined" / "report.json").write_text(json.dumps({"registered": {
+            "photographs": ["c.jpg"], "left_out": [{"name": "d.jpg", "reason": "5 matches with points"}]}}))
+        lines = ["3 of 4 photographs have poses", "warning: 1 photographs have no pose",
+                 "no pose: d.jpg: 5 matches with points"]
+        self.assertEqual(poses.lines_about(self.folder), lines)
+        self.assertEqual(self.said(poses.print_changes, self.folder).splitlines(), [f"    {line}" for line in lines])
 
     def test_a_lens_that_ran_away_is_refused(self):
         self.model(self.folder / "colmap" / "0", self.NAMES[:2])

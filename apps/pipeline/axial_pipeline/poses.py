@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which photographs COLMAP gave poses, and why others have none."""
+"""Which photographs have poses, and why others have none."""
 
 import json
 import struct
@@ -88,16 +88,14 @@ def take_best(file, given, out, options):
     left_out = reasons(file, colmap.names_in(best), [(model, n) for model, n in found[1:]
                                                      if model.parent == best.parent])
     left_out |= dict.fromkeys(blurred, BLURRED)
-    total = (len(photographs) or count) + len(blurred)
-    print(f"    {count} of {total} photographs have poses", flush=True)
+    record = {"photographs": (len(photographs) or count) + len(blurred), "registered": count, "left_out": left_out}
+    print_lines(lines_of(record))
     others = [str(n) for model, n in found[1:] if model.parent == best.parent]
     if others:
         print(f"    COLMAP could not join all images: {len(others)} more models, of {', '.join(others)} images, "
               f"remain in {best.parent}", flush=True)
     best.rename(models / "best")
-    files.write(models / RECORD, json.dumps({"photographs": total, "registered": count, "left_out": left_out}))
-    for line in lines_about(out):
-        print(f"    {line}", flush=True)
+    files.write(models / RECORD, json.dumps(record))
 
 
 def reasons(file, registered, others):
@@ -117,13 +115,40 @@ def reasons(file, registered, others):
     return why
 
 
-def lines_about(out):
-    """Lines about the photographs without a pose, for the console and the report."""
-    record = files.read_object(out / "colmap" / RECORD)
+def after_refining(record, refined):
+    """The record after RefinePoses gave poses to photographs that COLMAP left out. `refined`: its report."""
+    found = refined.get("registered", {})
+    given, reasons_now = found.get("photographs", []), {one["name"]: one["reason"] for one in found.get("left_out", [])}
+    left_out = {name: reasons_now.get(name, reason) for name, reason in record["left_out"].items()
+                if name not in given}
+    return {**record, "registered": record["registered"] + len(record["left_out"]) - len(left_out),
+            "left_out": left_out}
+
+
+def lines_of(record):
+    """How many photographs have poses, and why the others have none."""
     by_reason = {}
-    for name, reason in record.get("left_out", {}).items():
+    for name, reason in record["left_out"].items():
         by_reason.setdefault(reason, []).append(name)
+    yield f"{record['registered']} of {record['photographs']} photographs have poses"
     if by_reason:
         yield f"warning: {record['photographs'] - record['registered']} photographs have no pose"
     for reason, names in by_reason.items():
         yield f"no pose: {few(names)}: {reason}"
+
+
+def print_lines(lines):
+    for line in lines:
+        print(f"    {line}", flush=True)
+
+
+def lines_about(out):
+    """lines_of() the refined model in the folder `out`, for the report. None without a record."""
+    record = files.read_object(out / "colmap" / RECORD)
+    return list(lines_of(after_refining(record, files.read_object(out / "refined" / "report.json")))) if record else []
+
+
+def print_changes(out):
+    """Prints lines_about(), if RefinePoses gave poses to photographs that COLMAP left out."""
+    if files.read_object(out / "refined" / "report.json").get("registered", {}).get("photographs"):
+        print_lines(lines_about(out))

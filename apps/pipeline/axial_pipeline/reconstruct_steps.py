@@ -255,12 +255,13 @@ def steps_without_names_of_files(given, out):
     yield from colmap_steps(given, out)
     refine_into = lambda folder: programs.refine_poses(
         out / "colmap" / "best", cameras.lens_file(given, out), cameras.housing_file(given, out), folder,
-        *refine_options(given))
+        "--database", out / "database.db", *refine_options(given))
     command = refine_into(refined)
     yield Step("refine", command, makes=Report(refined / "report.json"),
                reads=[*lens_files(given), given.housing, *([known_positions] if known_positions else []),
                       *reads_of("refine-poses", command, given)],
-               before=lambda: turns.choose(given, out, refine_into) if given.cameras else None)
+               before=lambda: turns.choose(given, out, refine_into) if given.cameras else None,
+               after=lambda: poses.print_changes(out))
     if "densify" not in wanted_steps(given):
         return
     command = programs.import_scene(refined, given.images, scene, refined / "housing.json")
