@@ -245,7 +245,8 @@ LeftOutPhotographs add_left_out(const fs::path& file, std::span<const io::Colmap
   left_out.first = model.images.size();
   for (const io::ColmapImage& image : model.images) images.erase(image.name);
   Adder adder(database, lenses, model);
-  for (const auto& [name, image] : images) adder.add(*image, left_out.unusable);
+  for (const io::DatabaseImage& image : database.images)
+    if (images.contains(image.name)) adder.add(image, left_out.unusable);
   left_out.matches = matches_of(database, model);
   return left_out;
 }
