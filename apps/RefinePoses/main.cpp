@@ -177,6 +177,7 @@ LocalFrame set_known(Options& options, const pose::Bundle& bundle, const LocalFr
                 bundle, adjust, unused);
   adjust.poses_known = options.poses == "known";
   pose::set_estimated_numbers(options.refine_list, options.sigmas, bundle, adjust, option_of);
+  options.refine.keep_stated = options.refine_list == "auto";
   return adjust.positions.empty() ? frame_of_model : enter_local_frame(adjust.positions);
 }
 

@@ -53,6 +53,13 @@ struct AdjustOptions : Unknowns {
   // the focal length.
   std::optional<Unknowns> of_domes, of_air;
 
+  // Free numbers that adjust() leaves as they are nevertheless, by index of the camera. Empty:
+  // none.
+  std::vector<std::array<bool, kHousingNumbers>> kept;
+  bool keeps(std::size_t camera, std::size_t number) const {
+    return !kept.empty() && kept[camera][number];
+  }
+
   // The unknowns that apply to `camera`.
   const Unknowns& unknowns(const BundleCamera& camera) const;
   // The standard deviation with which `number` of `camera` was measured (Unknowns). 0: not
@@ -151,5 +158,20 @@ struct Uncertainty {
 // `options.pixel_sigma`. `progress` gets one line of text at the start of each part of the work.
 Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options,
                         const std::function<void(const std::string&)>& progress = {});
+
+// Free numbers of cameras, and their covariance in the units of housing_change.h.
+struct NumbersCovariance {
+  struct Number {
+    std::size_t camera = 0;  // index into Bundle::cameras
+    int index = 0;           // of the number in housing_change.h
+  };
+  std::vector<Number> numbers;
+  Eigen::MatrixXd covariance;
+};
+
+// The covariance of the free numbers of all cameras, by the same equations as uncertainty(), with
+// AdjustOptions::kept as if it were empty. Numbers of cameras with BundleCamera::same_as and
+// numbers that nothing determines are left out.
+NumbersCovariance covariance_of_numbers(const Bundle& bundle, const AdjustOptions& options);
 
 }  // namespace axial::pose

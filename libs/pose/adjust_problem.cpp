@@ -110,7 +110,7 @@ void AdjustProblem::fill_numbers() {
   for (std::size_t i = 0; i < bundle_.images.size(); ++i)
     std::ranges::copy(numbers_of(bundle_.images[i].pose), image_block(i));
   for (std::size_t i = 0; i < bundle_.cameras.size(); ++i)
-    std::ranges::copy(bundle_.cameras[i].change, change_block(i));
+    if (owns_change(i)) std::ranges::copy(bundle_.cameras[i].change, change_block(i));
   for (std::size_t i = 0; i < bundle_.points.size(); ++i)
     std::ranges::copy(bundle_.points[i].position, point_block(i));
 }
@@ -133,6 +133,7 @@ void AdjustProblem::add_known() {
   for (const KnownDistance& known : options_.distances) add_known_distance(known);
   add_known_positions();
   for (std::size_t camera = 0; camera < bundle_.cameras.size(); ++camera) {
+    if (!owns_change(camera)) continue;
     const Unknowns& unknowns = options_.unknowns(bundle_.cameras[camera]);
     for (int k = 0; k < kHousingNumbers; ++k)
       if (unknowns.free[static_cast<std::size_t>(k)]) add_measured(camera, k);
@@ -199,10 +200,13 @@ void AdjustProblem::fix_what_stays() {
   if (!options_.points_known && !options_.poses_known && options_.positions.size() < 3)
     problem_->SetParameterBlockConstant(image_block(anchor()));
   for (std::size_t camera = 0; camera < bundle_.cameras.size(); ++camera) {
+    if (!owns_change(camera)) continue;
     const Unknowns& unknowns = options_.unknowns(bundle_.cameras[camera]);
     std::vector<int> fixed;
     for (int k = 0; k < kHousingNumbers; ++k)
-      if (!unknowns.free[static_cast<std::size_t>(k)]) fixed.push_back(k);
+      if (const auto number = static_cast<std::size_t>(k);
+          !unknowns.free[number] || options_.keeps(camera, number))
+        fixed.push_back(k);
     double* const change = change_block(camera);
     if (!problem_->HasParameterBlock(change) || fixed.empty()) continue;
     if (fixed.size() == kHousingNumbers)
@@ -219,7 +223,8 @@ std::vector<double*> AdjustProblem::camera_blocks() {
       blocks.push_back(block);
   };
   for (std::size_t i = 0; i < bundle_.images.size(); ++i) add(image_block(i));
-  for (std::size_t i = 0; i < bundle_.cameras.size(); ++i) add(change_block(i));
+  for (std::size_t i = 0; i < bundle_.cameras.size(); ++i)
+    if (owns_change(i)) add(change_block(i));
   for (std::size_t i = 0; i < bundle_.points.size(); ++i)
     if (tied_[i]) add(point_block(i));
   return blocks;

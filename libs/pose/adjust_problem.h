@@ -46,8 +46,10 @@ class AdjustProblem {
   // The parameter block of the pose of an image, and of the changes of a camera. Both exist in the
   // problem only if a residual depends on them.
   double* image_block(std::size_t image) { return numbers_.data() + kPoseNumbers * image; }
+  // Cameras that share their change (BundleCamera::same_as) have the same block.
   double* change_block(std::size_t camera) {
-    return image_block(bundle_.images.size()) + kHousingNumbers * camera;
+    const std::size_t owner = bundle_.cameras[camera].same_as.value_or(camera);
+    return image_block(bundle_.images.size()) + kHousingNumbers * owner;
   }
 
   // Writes the present values of the parameter blocks, as poses, points and changes, to `bundle`,
@@ -57,8 +59,11 @@ class AdjustProblem {
  private:
   // The block of the position of a point.
   double* point_block(std::size_t point) {
-    return change_block(bundle_.cameras.size()) + 3 * point;
+    return image_block(bundle_.images.size()) + kHousingNumbers * bundle_.cameras.size() +
+           3 * point;
   }
+  // False if the camera shares the change of another camera.
+  bool owns_change(std::size_t camera) const { return !bundle_.cameras[camera].same_as; }
   void fill_numbers();
   void add_observations();
   void add_known();

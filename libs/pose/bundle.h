@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ struct BundleCamera {
   // The standard deviations that the files of lens and housing state for the measured numbers, in
   // the units of `change`. 0: not stated.
   HousingChange<double> stated_sigma = HousingChange<double>::Zero();
+  // The index in Bundle::cameras of an earlier camera with the same lens and port, which took
+  // photographs of another size. `change` is then that of the earlier camera: adjust() shares it.
+  std::optional<std::size_t> same_as = std::nullopt;
 
   // The camera with the change applied.
   HousedCamera now() const { return with_change(measured, change); }

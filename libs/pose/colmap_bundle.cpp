@@ -32,6 +32,17 @@ const io::ColmapCamera& lens_of(const io::ColmapCamera& camera,
 
 constexpr double kDegree = std::numbers::pi / 180;
 
+// Whether photographs of two sizes have the same focal length in mm: one is a reduced or a cropped
+// copy of the other.
+bool is_same_lens(const io::ColmapCamera& a, const io::ColmapCamera& b) {
+  constexpr double kAlike = 1e-3;
+  const double ratio = a.params[0] / b.params[0];
+  const auto is_one = [](double value) { return std::abs(value - 1) < kAlike; };
+  return (a.width != b.width || a.height != b.height) &&
+         (is_one(ratio) ||
+          is_one(ratio * static_cast<double>(b.width) / static_cast<double>(a.width)));
+}
+
 // Makes the bundle's cameras: one for each pair of lens and port that occurs.
 class CameraMaker {
  public:
@@ -49,10 +60,18 @@ class CameraMaker {
   void add(const io::ColmapCamera& lens, const std::string& port) {
     result_.bundle.cameras.push_back({{io::lens_of(lens), housing_.carried_port(port)},
                                       HousingChange<double>::Zero(),
-                                      stated_sigma(lens, housing_, port)});
+                                      stated_sigma(lens, housing_, port),
+                                      same_as(lens, port)});
     result_.lenses.push_back(lens);
     result_.lenses.back().id = static_cast<std::uint32_t>(result_.lenses.size());
     result_.ports.push_back(port);
+  }
+
+  // The first camera with this lens, at another size of the photographs, and this port.
+  std::optional<std::size_t> same_as(const io::ColmapCamera& lens, const std::string& port) const {
+    for (std::size_t i = 0; i < result_.ports.size(); ++i)
+      if (result_.ports[i] == port && is_same_lens(result_.lenses[i], lens)) return i;
+    return {};
   }
 
   ColmapBundle& result_;
@@ -208,14 +227,16 @@ io::ColmapModel to_model(const ColmapBundle& refined, const io::ColmapModel& mod
 io::Housing to_housing(const ColmapBundle& refined, const io::Housing& measured,
                        std::span<const HousingChange<double>> sigmas) {
   io::Housing housing;
-  std::map<std::string, int> uses;
-  for (const std::string& port : refined.ports) ++uses[port];
+  std::map<std::string, int> uses;  // cameras with changes of their own
+  for (std::size_t i = 0; i < refined.ports.size(); ++i)
+    uses[refined.ports[i]] += refined.bundle.cameras[i].same_as ? 0 : 1;
   for (std::size_t i = 0; i < refined.ports.size(); ++i) {
     const std::string& port = refined.ports[i];
     if (port == "none") continue;
     const BundleCamera& camera = refined.bundle.cameras[i];
     const bool own = uses[port] > 1 && !camera.change.isZero(0);
-    const std::string name = own ? fmt::format("{}_{}", port, refined.lenses[i].id) : port;
+    const std::size_t owner = camera.same_as.value_or(i);
+    const std::string name = own ? fmt::format("{}_{}", port, refined.lenses[owner].id) : port;
     housing.ports[name] = io::to_housing_port(*camera.now().port);
     housing.cameras[refined.lenses[i].id] = name;
     const io::PortSigmas stated =

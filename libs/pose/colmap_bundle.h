@@ -21,9 +21,12 @@ struct ColmapBundle {
 // Makes a bundle from the poses, points and tracks of `model`. The lenses of `model` are not used.
 // `lenses` holds lenses calibrated in air: if `lenses` has exactly one entry, all cameras of
 // `model` get this lens. Otherwise each camera gets the lens with its own id. `housing` gives the
-// port of each image. The bundle has one camera for each pair of lens and port that occurs. Its
-// images and points have the order of `model`. Observations whose pixel has no direction in the
-// lens are left out. The frame and the unit of `model` are kept; adjust() needs metres.
+// port of each image. The bundle has one camera for each pair of lens and port that occurs. Cameras
+// behind one port whose lenses are the same but for the size of the photographs (focal lengths, or
+// focal lengths by the width, that differ by at most 0.1 %) share their change
+// (BundleCamera::same_as). Its images and points have the order of `model`. Observations whose
+// pixel has no direction in the lens are left out. The frame and the unit of `model` are kept;
+// adjust() needs metres.
 //
 // Throws an Error if a camera of an image has no lens, if the image sizes of a camera and its lens
 // differ, if the model of a lens is not supported, if a port is not defined, or if a camera is
@@ -59,7 +62,8 @@ std::vector<io::ColmapCamera> refined_cameras(const ColmapBundle& bundle,
 
 // The present ports of the bundle, as a housing for the camera ids of ColmapBundle::lenses.
 // `measured` is the housing from which the bundle was made. If several cameras share a port, each
-// camera whose numbers have changed gets a port of its own. The name of this port is the old name,
+// camera whose numbers have changed gets a port of its own, with the exception of cameras with
+// BundleCamera::same_as. The name of this port is the old name,
 // an underscore and the camera id. Exception: if all cameras have one and the same port and
 // `measured` has no entries by image, this port becomes the default port, and there are no entries
 // by camera. `sigmas`: as for to_model().

@@ -87,8 +87,10 @@ struct FreeValue {
   double before = 0, sigma_before = 0;
 
   // True if the photographs say more about the value than its measurement: `sigma` is less than
-  // half of `sigma_before`, or the value was not measured.
-  bool by_photographs() const { return !(sigma_before > 0) || sigma < sigma_before / 2; }
+  // half of `sigma_before`, or the value was not measured. False if the measured value was kept.
+  bool by_photographs() const {
+    return !(sigma_before > 0) || (now != before && sigma < sigma_before / 2);
+  }
 };
 
 // The free numbers of `camera` with their present values and their standard deviations, by

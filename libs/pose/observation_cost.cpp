@@ -56,8 +56,8 @@ CurrentCameras::CurrentCameras(std::span<const BundleCamera> cameras, const doub
 }
 
 PhotographCamera CurrentCameras::now(std::size_t camera) const {
-  const HousingChange<double> change =
-      Eigen::Map<const HousingChange<double>>(changes_ + kHousingNumbers * camera);
+  const HousingChange<double> change = Eigen::Map<const HousingChange<double>>(
+      changes_ + kHousingNumbers * measured_[camera].same_as.value_or(camera));
   return PhotographCamera(with_change(measured_[camera].measured, change));
 }
 

@@ -36,7 +36,8 @@ Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& w);
 class CurrentCameras : public ceres::EvaluationCallback {
  public:
   // `changes`: the solver's parameter blocks, one per camera with kHousingNumbers numbers, in the
-  // order of `cameras` and one after the other. Both arrays must outlive the object.
+  // order of `cameras` and one after the other. The block of a camera with
+  // BundleCamera::same_as is not used. Both arrays must outlive the object.
   CurrentCameras(std::span<const BundleCamera> cameras, const double* changes);
 
   // Called by the solver. Rebuilds the cameras from `changes` if `new_evaluation_point` is true.

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/order_statistics.h"
+#include "pose/kept_numbers.h"
 #include "pose/known.h"
 #include "scene/decompositions.h"
 
@@ -136,6 +137,20 @@ void judge(const Bundle& bundle, double factor, AdjustOptions& options, RefineRe
   report.positions = options.positions;
 }
 
+// Sets free numbers to their measured values and keeps them, if the observations do not contradict
+// these values. Returns whether there are such numbers.
+bool keep_stated_numbers(Bundle& bundle, AdjustOptions& options) {
+  options.kept = numbers_to_keep(bundle, options);
+  bool any = false;
+  for (std::size_t camera = 0; camera < bundle.cameras.size(); ++camera)
+    for (std::size_t k = 0; k < kHousingNumbers; ++k)
+      if (options.keeps(camera, k)) {
+        bundle.cameras[camera].change(static_cast<Eigen::Index>(k)) = 0;
+        any = true;
+      }
+  return any;
+}
+
 }  // namespace
 
 double median_distance(const Bundle& bundle) {
@@ -197,6 +212,8 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink
   adjusting.least_gain = options.adjust.least_gain;
   judge(bundle, 1, adjusting, report);
   report.last = adjuster.adjust(bundle, adjusting, "last adjustment");
+  if (options.keep_stated && keep_stated_numbers(bundle, adjusting))
+    report.last = adjuster.adjust(bundle, adjusting, "adjustment with stated numbers");
   filter(bundle, limits, &report.dropped);
   if (bundle.observations.empty()) fail("no observation fits refractive cameras");
   report.lost = lost_knowledge(bundle, adjusting);

@@ -19,6 +19,9 @@ struct RefineOptions {
   AdjustOptions adjust;
   TrackLimits tracks;
   int rounds = 3;  // a round adjusts, then drops observations that do not fit (filter())
+  // True: free numbers whose measured values the observations do not contradict keep these values
+  // (numbers_to_keep() in kept_numbers.h). The other numbers are adjusted once more.
+  bool keep_stated = false;
 };
 
 // The report of refine(). "before": at the call, with the initial poses. "after": at the end, when

@@ -23,7 +23,8 @@ std::size_t unknowns_of(const Bundle& bundle, const AdjustOptions& options) {
   const std::size_t points = options.points_known ? 0 : bundle.points.size();
   std::size_t free = 0;
   for (const BundleCamera& camera : bundle.cameras)
-    free += static_cast<std::size_t>(std::ranges::count(options.unknowns(camera).free, true));
+    if (!camera.same_as)
+      free += static_cast<std::size_t>(std::ranges::count(options.unknowns(camera).free, true));
   // The poses of images without observations are not adjusted.
   const std::vector<std::size_t> counts = observations_by_image(bundle);
   auto images = counts.size() -
@@ -188,6 +189,28 @@ class Normal {
     return sigmas;
   }
 
+  NumbersCovariance covariance_of_numbers() {
+    NumbersCovariance result;
+    std::vector<Eigen::VectorXd> rows;
+    std::vector<Eigen::Index> unknowns;
+    for (std::size_t camera = 0; camera < bundle_.cameras.size(); ++camera) {
+      const HousingChange<double> sigmas = sigmas_of_camera(camera);
+      for (int k = 0; !bundle_.cameras[camera].same_as && k < kHousingNumbers; ++k) {
+        if (!(sigmas(k) > 0 && std::isfinite(sigmas(k)))) continue;
+        unknowns.push_back(unknown_of_column_[*column_of(camera, k)]);
+        rows.push_back(covariance_->times(Eigen::VectorXd::Unit(unknowns_, unknowns.back())));
+        result.numbers.push_back({camera, k});
+      }
+    }
+    const auto count = static_cast<Eigen::Index>(rows.size());
+    result.covariance.resize(count, count);
+    for (Eigen::Index i = 0; i < count; ++i)
+      for (Eigen::Index j = 0; j < count; ++j)
+        result.covariance(i, j) =
+            rows[static_cast<std::size_t>(i)](unknowns[static_cast<std::size_t>(j)]);
+    return result;
+  }
+
   // The relative standard deviation of the distance between the first image and the image farthest
   // from it.
   double sigma_of_scale() {
@@ -237,7 +260,7 @@ class Normal {
   void select_columns(Eigen::Index columns) {
     unknown_of_column_.assign(static_cast<std::size_t>(columns), 0);
     for (std::size_t camera = 0; camera < bundle_.cameras.size(); ++camera)
-      for (int k = 0; k < kHousingNumbers; ++k) {
+      for (int k = 0; !bundle_.cameras[camera].same_as && k < kHousingNumbers; ++k) {
         const auto column = column_of(camera, k);
         const BundleCamera& one = bundle_.cameras[camera];
         if (!column || options_.unknowns(one).free[static_cast<std::size_t>(k)]) continue;
@@ -285,6 +308,13 @@ class Normal {
   std::optional<Covariance> covariance_;
 };
 
+AdjustOptions weighed_by_residuals(const Bundle& bundle, const AdjustOptions& options) {
+  AdjustOptions weighed = options;
+  weighed.pixel_sigma = observed_pixel_sigma(bundle, options);
+  weighed.kept.clear();
+  return weighed;
+}
+
 }  // namespace
 
 double observed_pixel_sigma(const Bundle& bundle, const AdjustOptions& options) {
@@ -295,12 +325,15 @@ double observed_pixel_sigma(const Bundle& bundle, const AdjustOptions& options) 
   return std::max(kLeast, root_mean_square(errors) * std::sqrt(residuals / (2 * free)));
 }
 
+NumbersCovariance covariance_of_numbers(const Bundle& bundle, const AdjustOptions& options) {
+  return Normal(bundle, weighed_by_residuals(bundle, options), {}).covariance_of_numbers();
+}
+
 Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options,
                         const std::function<void(const std::string&)>& progress) {
   Uncertainty result;
-  result.pixel_sigma = observed_pixel_sigma(bundle, options);
-  AdjustOptions weighed = options;
-  weighed.pixel_sigma = result.pixel_sigma;
+  const AdjustOptions weighed = weighed_by_residuals(bundle, options);
+  result.pixel_sigma = weighed.pixel_sigma;
   Normal normal(bundle, weighed, progress);
   for (std::size_t camera = 0; camera < bundle.cameras.size(); ++camera)
     result.camera_sigmas.push_back(normal.sigmas_of_camera(camera));

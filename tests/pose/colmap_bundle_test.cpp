@@ -139,6 +139,61 @@ TEST(ColmapBundle, GivesEachPortItsCamera) {
               1e-15);
 }
 
+// Half of the photographs are reduced copies: lens and port are one, whatever the size.
+TEST(ColmapBundle, CamerasOfTwoSizesShareWhatIsMeasured) {
+  const Bundle truth = survey(camera_behind(flat_port(2)), {.noise = 0.3});
+  io::ColmapModel model = model_of(truth);
+  model.cameras.push_back(model.cameras[0]);
+  io::ColmapCamera& small = model.cameras[1];
+  small.id = 5;
+  small.width = 512;
+  small.height = 384;
+  io::ColmapCamera small_lens = kLens;
+  small_lens.id = 5;
+  small_lens.width = 512;
+  small_lens.height = 384;
+  for (const int k : {0, 1, 2, 3}) small_lens.params[static_cast<std::size_t>(k)] /= 2;
+  for (std::size_t i = 0; i < model.images.size(); i += 2) {
+    model.images[i].camera = 5;
+    for (io::ColmapPoint2D& point : model.images[i].points) {
+      point.x /= 2;
+      point.y /= 2;
+    }
+  }
+  ColmapBundle bundle = to_bundle(model, std::vector{kLens, small_lens}, housing());
+  ASSERT_EQ(bundle.bundle.cameras.size(), 2u);
+  EXPECT_EQ(bundle.bundle.cameras[1].same_as, 0u);
+  AdjustOptions options;
+  options.free = {true, true, true, true, false, true};
+  options.default_sigma = {0.05, 0.05, 0.005, 0.004, 0, 0.005};
+  options.poses_known = true;
+  adjust(bundle.bundle, options);
+  EXPECT_EQ(bundle.bundle.cameras[0].change, bundle.bundle.cameras[1].change);
+  EXPECT_FALSE(bundle.bundle.cameras[0].change.isZero(0));
+  const Uncertainty known = uncertainty(bundle.bundle, options);
+  EXPECT_EQ(known.camera_sigmas[0], known.camera_sigmas[1]);
+  EXPECT_GT(known.camera_sigmas[0](kIndexNumber), 0);
+  EXPECT_EQ(covariance_of_numbers(bundle.bundle, options).numbers.size(), 5u);
+  const io::Housing back = to_housing(bundle, housing());
+  EXPECT_EQ(back.ports.size(), 1u);
+  EXPECT_EQ(back.default_port, "main");
+}
+
+// A zoomed lens has another entrance pupil: it gets numbers of its own.
+TEST(ColmapBundle, CamerasOfTwoFocalLengthsShareNothing) {
+  io::ColmapModel model = model_of(survey(camera_behind(flat_port(2)), {}));
+  model.cameras.push_back(model.cameras[0]);
+  model.cameras[1].id = 5;
+  model.images[0].camera = 5;
+  io::ColmapCamera zoomed = kLens;
+  zoomed.id = 5;
+  zoomed.params[0] *= 1.2;
+  zoomed.params[1] *= 1.2;
+  const ColmapBundle bundle = to_bundle(model, std::vector{kLens, zoomed}, housing());
+  ASSERT_EQ(bundle.bundle.cameras.size(), 2u);
+  EXPECT_FALSE(bundle.bundle.cameras[1].same_as);
+}
+
 TEST(ColmapBundle, RefusesAWaterSurface) {
   const io::ColmapModel model = model_of(survey(camera_behind(flat_port(2)), {}));
   io::Housing lake = housing();
