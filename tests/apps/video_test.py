@@ -158,6 +158,16 @@ class WithImages(StandIns):
         self.assertIn("--frames --png: is only for --video", self.ended("--frames=--png").stderr)
 
 
+class WithNeither(StandIns):
+    source = ()
+
+    def test_photographs_or_a_video_are_needed(self):
+        result = self.ended()
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(result.stderr, "reconstruct: --images is missing: the folder of the photographs; or give "
+                         "--video\n")
+
+
 class RealFrames(WithVideo):
     """With ExtractFrames itself."""
 

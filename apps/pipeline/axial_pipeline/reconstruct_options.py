@@ -28,8 +28,8 @@ MOST_TILES = 1000  # as in the programs
 def options(script_folder, description):
     programs = os.environ.get("AXIAL_BIN", str(default_folder(script_folder)))
     parser = argparse.ArgumentParser(description=description)
-    source = parser.add_mutually_exclusive_group(required=True)
-    source.add_argument("--images", default="", help="folder of the raw underwater photographs")
+    source = parser.add_mutually_exclusive_group()
+    source.add_argument("--images", default="", help="folder of the raw underwater photographs; this option or --video is required")
     source.add_argument("--video", action="append", default=[], dest="videos", metavar="CLIP",
                         help="in place of --images: a video, of which sharp frames with enough motion between them "
                         "become the photographs; may be given several times (docs/underwater-guide.md)")

@@ -23,6 +23,8 @@ def check(given):
     the frames will be in. `given.output` is absolute."""
     if given.frames and not given.videos:
         raise Failure(f"--frames {given.frames}: is only for --video")
+    if not given.videos and not given.images:
+        raise Failure("--images is missing: the folder of the photographs; or give --video")
     if not given.videos:
         return
     if not (pathlib.Path(given.programs) / PROGRAM).is_file():
