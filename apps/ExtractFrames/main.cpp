@@ -98,8 +98,8 @@ void warn_of_rolling_shutter(const video::ChosenFrames& found) {
   if (least > 1)
     log_warning(
         "{}: the picture moves by {:.1f} to {:.1f} pixels while a rolling shutter reads a frame "
-        "(half of the time between frames, or all of it): poses and shapes are wrong by as "
-        "much; move slower, or film with more frames per second",
+        "(half of the time between frames, or all of it), which the programs do not model; move "
+        "slower, or film with more frames per second",
         found.clip.string(), least, pixels);
 }
 

@@ -29,10 +29,14 @@ inline cv::Mat3b view_of(const cv::Mat3b& texture, double left, cv::Size size) {
   return view;
 }
 
-// Writes frames as a video of Motion JPEG with 30 frames per second.
+// Writes frames as a video with 30 frames per second: an .avi of Motion JPEG, or an .mp4 of MPEG-4,
+// whose frames depend on earlier frames.
 inline void write_clip(const std::filesystem::path& file, const std::vector<cv::Mat3b>& frames) {
-  cv::VideoWriter writer(file.string(), cv::CAP_OPENCV_MJPEG,
-                         cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 30, frames.front().size());
+  const bool mp4 = file.extension() == ".mp4";
+  const int codec = mp4 ? cv::VideoWriter::fourcc('m', 'p', '4', 'v')
+                        : cv::VideoWriter::fourcc('M', 'J', 'P', 'G');
+  cv::VideoWriter writer(file.string(), mp4 ? cv::CAP_FFMPEG : cv::CAP_OPENCV_MJPEG, codec, 30,
+                         frames.front().size());
   for (const cv::Mat3b& frame : frames) writer.write(frame);
 }
 

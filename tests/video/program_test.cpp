@@ -62,6 +62,23 @@ TEST_F(ExtractFrames, WritesSharpFramesWithTheStatedMotionBetweenThem) {
   }
 }
 
+TEST_F(ExtractFrames, FramesThatDependOnEarlierFramesAreRead) {
+  const auto frames = test::moving_frames(60, 6);
+  write("dive.mp4", frames);
+  const auto outcome = run("dive.mp4 -o out --json frames.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const auto clip = io::read_json(folder_ / "frames.json").at("clips").at(0);
+  EXPECT_EQ(clip.at("frame_count"), 60);
+  ASSERT_GE(clip.at("frames").size(), 9u);
+  for (const auto& one : clip.at("frames")) {
+    const auto frame = one.at("frame").get<std::size_t>();
+    EXPECT_NE(frame % 3, 1u) << "is blurred";
+    const cv::Mat3b pixels = io::read_color_image(folder_ / "out" / "dive" / one.at("file"));
+    EXPECT_LT(cv::norm(pixels, frames[frame], cv::NORM_L1),
+              0.5 * cv::norm(pixels, frames.at(frame + 1), cv::NORM_L1));
+  }
+}
+
 TEST_F(ExtractFrames, TheSameClipGivesTheSameBytes) {
   write("dive.avi", test::moving_frames(40, 6));
   ASSERT_EQ(run("dive.avi -o a --json a.json --max-threads 1").exit_code, 0);
