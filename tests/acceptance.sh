@@ -13,7 +13,7 @@ bash apps/pipeline/install-deps.sh
 cmake --preset release -DAXIAL_TESTS=ON --log-level=WARNING
 cmake --build --preset release --target InterfaceCOLMAP DensifyPointCloud SimulateUnderwater \
   EvaluateReconstruction AlignModel RefinePoses ReconstructMesh RefineMesh TextureMesh \
-  MapSurface CompareSurveys TransformScene ViewScene CalibrateHousing ReproducePaper \
+  MapSurface CompareSurveys TransformScene ViewScene CalibrateHousing ReproducePaper ExtractFrames \
   map_check change_check held_out_check seam_check unseen_check static_overlay \
   drawn_boards dive_photograph matching_benchmark
 exec python3 tests/acceptance/acceptance.py "$@"

@@ -13,6 +13,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "apps"))
 from programs import grey_png  # noqa: E402
+from small_clip import moving_clip  # noqa: E402
 
 THREADS = ("--max-threads", "1")
 NOT_CHANGED = {"help", "version", "log-file"}
@@ -92,6 +93,7 @@ PROGRAMS = {program.name: program for program in (
                                  "distance", "--distance-sigma", "0.0005", "-o", "out.json"),
             (*BOARDS[:2], "board.cameras.txt", "board.housing.json"), BOARDS,
             may_name=("board",)),
+    Program("ExtractFrames", ("-i", "clip.avi", "-o", "out", "--json", "out.json"), ("clip.avi",)),
     Program("ReproducePaper", ("figure3", "--quick", "-o", "paper"),
             ("paper/quick/figure3.json", "ReproducePaper.cfg"), kept_on_error=r"paper/.*",
             may_name=("figure3",)),
@@ -211,6 +213,7 @@ def make_all(binaries, folder):
     run("ReconstructMesh", "-i", "scene_dense.mvs", "-o", "mesh.ply")
     run("TextureMesh", "-i", "scene_dense.mvs", "-m", "mesh.ply", "-o", "textured.ply")
     run("MapSurface", *PROGRAMS["MapSurface"].options[:5], "map", "--ground-sample-distance", "0.02")
+    (folder / "clip.avi").write_bytes(moving_clip())
     write_board(folder)
     write_few(folder)
     write_other(folder)

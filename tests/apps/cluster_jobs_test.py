@@ -57,7 +57,7 @@ class Jobs(InFolder):
                  "lens_model": "OPENCV",
                  "refine_poses": "", "densify": "", "mesh": "", "refine_mesh": "", "texture": "",
                  "features": "", "matches": "", "poses": "", "keep_all": False, "cameras": [],
-                 "lenses": [str(lens)], "lines": [],
+                 "lenses": [str(lens)], "lines": [], "videos": [],
                  "map": "", "compare": "", "page": "",
                  "tiles": 1, "until": "cloud", "without": "",
                  "earlier": "", "truth": "", "programs": "bin", "masks": "", "ignore_mask_label": "", **more}

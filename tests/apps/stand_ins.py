@@ -48,6 +48,8 @@ esac
 class StandIns(unittest.TestCase):
     """The whole script, with stand-in programs that end at once or sleep."""
 
+    source = ("--images", "images")
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="axial_")
         self.addCleanup(folder.cleanup)
@@ -65,7 +67,7 @@ class StandIns(unittest.TestCase):
 
     def start(self, *more):
         process = subprocess.Popen(
-            [sys.executable, str(SCRIPT), "--images", "images", "--lens", "lens", "--housing",
+            [sys.executable, str(SCRIPT), *self.source, "--lens", "lens", "--housing",
              "housing", "-o", "out", "--programs", ".", *more], cwd=self.folder, text=True,
             stdout=subprocess.PIPE, stderr=subprocess.PIPE,
             env={**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}"})

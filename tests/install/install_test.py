@@ -15,8 +15,8 @@ import unittest
 
 BUILD, SOURCE, VERSION = sys.argv[1:4]
 PROGRAMS = ["AlignModel", "CalibrateHousing", "CompareSurveys", "DensifyPointCloud",
-            "EvaluateReconstruction", "InterfaceCOLMAP", "MapSurface", "ReconstructMesh", "RefineMesh",
-            "RefinePoses", "ReproducePaper", "SimulateUnderwater", "TextureMesh", "TransformScene",
+            "EvaluateReconstruction", "ExtractFrames", "InterfaceCOLMAP", "MapSurface", "ReconstructMesh",
+            "RefineMesh", "RefinePoses", "ReproducePaper", "SimulateUnderwater", "TextureMesh", "TransformScene",
             "ViewScene"]
 
 

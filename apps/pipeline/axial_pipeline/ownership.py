@@ -24,6 +24,7 @@ CHANGES = ("difference.tif", "sigma.tif", "significant.tif", "json", "jpg")
 # steps. A name that is a folder stands for everything in the folder. Steps that remove files name each
 # kind of file, because users put their own beside them, such as scene_map.qgz of QGIS.
 WRITES = {
+    "frames": ["frames", "frames.json"],
     "masks": ["colmap_masks"],
     "features": ["features.db", "features.db-*", "still_features.json", "still_features.png",
                  "weak_features.*", "cameras"],

@@ -33,6 +33,11 @@ class Programs:
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
 
+    def extract_frames(self, clips, folder, file, *options):
+        """Frames of videos as photographs in `folder`; `file`: what is known about them."""
+        return [self.folder / "ExtractFrames", *(word for clip in clips for word in ("-i", clip)), "-o", folder,
+                "--json", file, *options]
+
     def import_scene(self, model, images, scene, housing=None):
         """A COLMAP model and its photographs to the scene file `scene`."""
         port = ["--housing", housing] if housing else []

@@ -4,22 +4,23 @@ them, in one command:
 
     reconstruct --images DIR --lens cameras.txt --housing housing.json -o OUT
 
-COLMAP computes poses with a lens that it calibrates itself. RefinePoses turns them into refractive
-poses. DensifyPointCloud computes the cloud. ReconstructMesh, RefineMesh and TextureMesh turn the
-cloud into a textured mesh, and MapSurface maps it. With --earlier, CompareSurveys finds what changed
-since an earlier survey. ViewScene writes a page for the browser that shows the results. The command of every step is printed and can be typed by hand. A killed
-run that is started again with the same options continues with the step that was killed; with other
-options, it continues with the first step that differs. A second run in the same folder is refused
-until the first run ends. With --cluster, a workflow of Snakemake runs the same commands, and several
-nodes of a cluster compute the depth maps (docs/cluster.md).
+With --video, ExtractFrames first makes photographs of videos. COLMAP computes poses with a lens that it
+calibrates itself. RefinePoses turns them into refractive poses. DensifyPointCloud computes the cloud.
+ReconstructMesh, RefineMesh and TextureMesh turn the cloud into a textured mesh, and MapSurface maps it. With
+--earlier, CompareSurveys finds what changed since an earlier survey. ViewScene writes a page for the browser
+that shows the results. The command of every step is printed and can be typed by hand. A killed run that is
+started again with the same options continues with the step that was killed; with other options, it continues
+with the first step that differs. A second run in the same folder is refused until the first run ends. With
+--cluster, a workflow of Snakemake runs the same commands, and several nodes of a cluster compute the depth
+maps (docs/cluster.md).
 """
 
 import fcntl
 import pathlib
 
-from . import cluster, files, ownership, poses, still_features
+from . import cluster, files, ownership, poses, still_features, video
 from .failure import Failure, run_main
-from .reconstruct_options import check, options, wanted_steps
+from .reconstruct_options import check_options, check_photographs, options, wanted_steps
 from .reconstruct_steps import best_mesh, steps
 from .steps import run_all
 
@@ -108,13 +109,35 @@ def results_of(given, out):
     return "   ".join(f"{name}: {path}" for name, path in [*found, ("Report", out / "report.md")])
 
 
+def make_frames(given, out):
+    """Chooses the frames of --video. The steps of the run depend on the sizes of the photographs, so that this
+    step runs before the others are known."""
+    step = video.step(given, out)
+    ownership.check(out, [step.name])
+    out.mkdir(parents=True, exist_ok=True)
+    with only_run_in(out):
+        run_all([step], out, ownership.ORDER)
+
+
+def say_found(found):
+    print(*(f"{word:12} {text}" for word, text in found), "No fault was found.", sep="\n")
+
+
 def reconstruct(given):
-    found = check(given)
+    lens_lines = check_options(given)
     out = pathlib.Path(given.output)
+    if given.videos and not video.are_there(given, out):
+        if given.check:
+            say_found([*video.rows(given), *(("lens", line) for line in lens_lines)])
+            return
+        make_frames(given, out)
+    for line in video.lines_about(out) if given.videos else ():
+        print(line, flush=True)
+    found = check_photographs(given, lens_lines)
     todo = list(steps(given, out))
     ownership.check(out, [step.name for step in todo], bool(given.cluster))
     if given.check:
-        print(*(f"{word:12} {text}" for word, text in found), "No fault was found.", sep="\n")
+        say_found(found)
         return
     out.mkdir(parents=True, exist_ok=True)
     with only_run_in(out) as lock:

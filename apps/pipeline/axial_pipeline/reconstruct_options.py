@@ -7,7 +7,7 @@ import os
 import pathlib
 
 from . import (cameras, cluster, colmap, database, estimates, files, first_checks, lenses, masks, matching,
-               photographs, positions)
+               photographs, positions, video)
 from .failure import Failure
 from .option_files import find_option, has_option
 from .ownership import ORDER, WRITES, is_record
@@ -16,7 +16,7 @@ from .programs import Programs, default_folder, words_of
 PROGRAMS = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh",
             "TextureMesh", "MapSurface", "CompareSurveys", "ViewScene")
 # Options whose values are options for a program, and this program.
-MORE_OPTIONS = {"features": "COLMAP's feature_extractor", "matches": "COLMAP's matcher",
+MORE_OPTIONS = {"frames": "ExtractFrames", "features": "COLMAP's feature_extractor", "matches": "COLMAP's matcher",
                 "poses": "COLMAP's mapper", "refine-poses": "RefinePoses", "densify": "DensifyPointCloud",
                 "mesh": "ReconstructMesh", "refine-mesh": "RefineMesh", "texture": "TextureMesh",
                 "map": "MapSurface", "compare": "CompareSurveys", "page": "ViewScene"}
@@ -28,7 +28,11 @@ MOST_TILES = 1000  # as in the programs
 def options(script_folder, description):
     programs = os.environ.get("AXIAL_BIN", str(default_folder(script_folder)))
     parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("--images", required=True, help="folder of the raw underwater photographs")
+    source = parser.add_mutually_exclusive_group()
+    source.add_argument("--images", default="", help="folder of the raw underwater photographs; this option or --video is required")
+    source.add_argument("--video", action="append", default=[], dest="videos", metavar="CLIP",
+                        help="in place of --images: a video, of which sharp frames with enough motion between them "
+                        "become the photographs; may be given several times (docs/underwater-guide.md)")
     parser.add_argument("--lens", required=True, action="append", dest="lenses", metavar="LENS",
                         help="the lens as calibrated in air: a COLMAP cameras.txt, or Calibmar's "
                         "calibration.yaml. Photographs of several cameras, sizes or focal lengths: several lenses in a "
@@ -181,7 +185,7 @@ def end_of(step, out):
 def is_current(step, out):
     """Whether the result of the step of this name was made from the present results of the steps
     before it."""
-    needed = [name for name in ORDER[:ORDER.index(step) + 1] if name not in ("masks", "refine-mesh")]
+    needed = [name for name in ORDER[:ORDER.index(step) + 1] if name not in ("frames", "masks", "refine-mesh")]
     ends = [end_of(name, out) for name in dict.fromkeys([*needed, step])]
     return all(ends) and all(later + doubt >= earlier for (earlier, _), (later, doubt)
                              in zip(ends, ends[1:]))
@@ -246,12 +250,11 @@ def check_paths(given):
         if not pathlib.Path(file).is_file():
             raise Failure(f"--scale-from {given.scale_from}: file not found")
         given.scale_from = positions.PREFIX + str(pathlib.Path(file).resolve())
-        positions.check(pathlib.Path(file), pathlib.Path(given.images))
 
 
-def check(given):
-    """Checks everything that can be known before hours of work, and makes all paths absolute. Returns what was
-    found, for --check: pairs of a word and a text."""
+def check_options(given):
+    """Checks everything that can be known without the photographs, and makes all paths absolute. Returns lines
+    about the lens behind the port."""
     check_paths(given)
     for program in PROGRAMS:
         if not (pathlib.Path(given.programs) / program).is_file():
@@ -268,17 +271,30 @@ def check(given):
         given.earlier = str(mesh_of_earlier_survey(pathlib.Path(given.earlier)))
     if given.snakemake and not given.cluster:
         raise Failure(f"--snakemake {given.snakemake}: is only for --cluster")
+    given.output = str(files.resolved("--output", given.output))
+    video.check(given)
+    if given.earlier and is_own_mesh(pathlib.Path(given.earlier), pathlib.Path(given.output)):
+        raise Failure(f"--earlier {given.earlier}: this run replaces this mesh; give another --output")
     colmap.check_installed()
+    first_checks.check_refine(given)
     lens_lines = first_checks.check_lens_and_housing(given)
+    first_checks.check_options_of_programs(given, MORE_OPTIONS)
+    return lens_lines
+
+
+def check_photographs(given, lens_lines):
+    """Checks everything else that can be known before hours of work. `lens_lines`: of check_options(). Returns
+    what was found, for --check: pairs of a word and a text."""
+    file = positions.file_of(given.scale_from)
+    if file is not None:
+        positions.check(pathlib.Path(file), pathlib.Path(given.images))
     images = photographs.check(given.images, one_size=False)
     given.cameras, left_out = cameras.of(given, images)
     given.lines = [*cameras.lines_about(given.cameras), *left_out]
     for line in given.lines:
         print(f"{given.images}: {line}", flush=True)
+    given.lines += video.lines_about(pathlib.Path(given.output)) if given.videos else []
     matching.check(given)
-    given.output = str(files.resolved("--output", given.output))
-    if given.earlier and is_own_mesh(pathlib.Path(given.earlier), pathlib.Path(given.output)):
-        raise Failure(f"--earlier {given.earlier}: this run replaces this mesh; give another --output")
     if pathlib.Path(given.output).is_relative_to(given.images):
         raise Failure(f"--output {given.output}: lies in the folder of the images")
     if given.cluster:
@@ -289,9 +305,7 @@ def check(given):
 def found_in(given, images, lens_lines):
     """Checks that need the photographs and the programs. Returns what was found."""
     used = [name for one in given.cameras for name in one.names] or list(images)
-    first_checks.check_refine(given)
     first_checks.check_scale(given, used)
-    first_checks.check_options_of_programs(given, MORE_OPTIONS)
     lens_lines = first_checks.check_cameras(given) if given.cameras else lens_lines
     sizes = [images[name].size for name in used if images[name].size]
     if not sizes:

@@ -4,7 +4,7 @@
 import pathlib
 import shlex
 
-from . import cameras, colmap, features, lenses, masks, matching, poses, positions, start_lens, still_features, turns
+from . import cameras, colmap, features, lenses, masks, matching, poses, positions, start_lens, still_features, turns, video
 from .option_files import find_option, has_option, read_by
 from .ownership import WRITES
 from .programs import Programs, words_of
@@ -252,6 +252,8 @@ def steps_without_names_of_files(given, out):
     programs, densify = Programs(given.programs), options_for(["densify"], given, out)["densify"]
     refined, scene, cloud = out / "refined", out / "scene.mvs", out / "scene_dense.ply"
     known_positions = positions.file_of(given.scale_from)
+    if given.videos:
+        yield video.step(given, out)
     yield from colmap_steps(given, out)
     refine_into = lambda folder: programs.refine_poses(
         out / "colmap" / "best", cameras.lens_file(given, out), cameras.housing_file(given, out), folder,

@@ -9,7 +9,7 @@ import re
 from . import files, jobs
 from .steps import Records, chain_to, digest, read_record
 
-FOUND = ("lenses", "cameras", "lines")  # what the first checks add to the options
+FOUND = ("lenses", "cameras", "lines", "videos")  # what the first checks add to the options
 # The jobs of which `reconstruct --cluster` makes a step.
 PARTS = {"densify": ("plan", "depth-*", "densify-tile-*"), "mesh": ("mesh-tile-*",)}
 
@@ -52,7 +52,8 @@ def entry_of(step, todo, out):
 def write_run(path, given, todo, out):
     """Writes the file `path` about the steps `todo`, which are done, of a run in the folder `out`.
     `given`: the options of `reconstruct`."""
-    found = {**vars(given), "lens": vars(given).get("lenses")}
+    found = {**vars(given), "lens": vars(given).get("lenses"), "video": vars(given).get("videos")}
+    found["images"] = "" if found["video"] else vars(given).get("images")  # the first checks set it for videos
     options = [f"--{name.replace('_', '-')}={one}" for name, value in found.items()
                if value and name not in FOUND for one in (value if isinstance(value, list) else [value])]
     steps = [entry_of(step, todo, out) for step in todo]
