@@ -121,7 +121,7 @@ class Checked(ProgramTest):
     def setUp(self):
         super().setUp()
         for number in range(3):
-            write(self.path("images", f"{number}.png"), grey_png([bytes(48)] * 36))
+            write(self.path("images", f"{number}.png"), grey_png([bytes([number] * 48)] * 36))
         write(self.path("lens.txt"), "1 PINHOLE 48 36 40 40 24 18\n")
         write(self.path("housing.json"), housing_with(FLAT))
 

@@ -6,8 +6,8 @@ import fnmatch
 import os
 import pathlib
 
-from . import (cameras, cluster, colmap, database, estimates, files, first_checks, lenses, masks, matching,
-               photographs, positions)
+from . import (cameras, cluster, colmap, database, doubles, estimates, files, first_checks, lenses, masks, matching,
+               photographs, poses, positions)
 from .failure import Failure
 from .option_files import find_option, has_option
 from .ownership import ORDER, WRITES, is_record
@@ -53,7 +53,7 @@ def options(script_folder, description):
                         "this lens)")
     parser.add_argument("--check", action="store_true", help="check all inputs, print what was found and how much "
                         "time, memory and disk space the run needs, and end")
-    parser.add_argument("--keep-all", action="store_true", help="use blurred photographs, too")
+    parser.add_argument("--keep-all", action="store_true", help="use blurred, dark and doubled photographs, too")
     for name, program in MORE_OPTIONS.items():
         parser.add_argument(f"--{name}", default="",
                             help=f"more options for {program}, in one word" +
@@ -275,6 +275,7 @@ def check(given):
     given.lines = [*cameras.lines_about(given.cameras), *left_out]
     for line in given.lines:
         print(f"{given.images}: {line}", flush=True)
+    given.doubled = doubled(given, images)
     matching.check(given)
     given.output = str(files.resolved("--output", given.output))
     if given.earlier and is_own_mesh(pathlib.Path(given.earlier), pathlib.Path(given.output)):
@@ -286,14 +287,30 @@ def check(given):
     return found_in(given, images, lens_lines)
 
 
+def used(given, images):
+    """The names of the photographs that have a lens."""
+    return [name for one in given.cameras for name in one.names] or list(images)
+
+
+def doubled(given, images):
+    """Finds photographs with the same bytes, as doubles.identical(), and says which are left out. None with
+    --keep-all."""
+    found = {} if given.keep_all else doubles.identical(given.images, used(given, images), poses.scale_names(given))
+    if found:
+        pairs = [f"{name} is {twin}" for name, twin in found.items()]
+        print(f"{given.images}: {len(found)} photographs are copies of others, and are left out (--keep-all keeps "
+              f"them): {photographs.few(pairs)}", flush=True)
+    return found
+
+
 def found_in(given, images, lens_lines):
     """Checks that need the photographs and the programs. Returns what was found."""
-    used = [name for one in given.cameras for name in one.names] or list(images)
+    names = used(given, images)
     first_checks.check_refine(given)
-    first_checks.check_scale(given, used)
+    first_checks.check_scale(given, names)
     first_checks.check_options_of_programs(given, MORE_OPTIONS)
     lens_lines = first_checks.check_cameras(given) if given.cameras else lens_lines
-    sizes = [images[name].size for name in used if images[name].size]
+    sizes = [images[name].size for name in names if images[name].size]
     if not sizes:
         return []
     needs = estimates.needs_of(given, sizes)

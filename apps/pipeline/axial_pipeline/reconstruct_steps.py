@@ -4,7 +4,8 @@
 import pathlib
 import shlex
 
-from . import cameras, colmap, features, lenses, masks, matching, poses, positions, start_lens, still_features, turns
+from . import (cameras, colmap, features, left_out, lenses, masks, matching, poses, positions, start_lens,
+               still_features, turns)
 from .option_files import find_option, has_option, read_by
 from .ownership import WRITES
 from .programs import Programs, words_of
@@ -55,10 +56,11 @@ def write_cameras(given, out):
         cameras.write(given, out)
 
 
-def prepare_matches(given, file, out):
-    """Leaves out blurred photographs, and sets the lens for COLMAP."""
+def prepare_matches(given, found, file, out):
+    """Leaves out photographs that do no good, and sets the lens for COLMAP. `found`: the database with the
+    features of all photographs."""
     if not given.keep_all:
-        features.leave_out_blurred(file)
+        left_out.leave_out(found, file, given.doubled, poses.scale_names(given), given.scale_from)
     start_lens.set_in(file, given, out)
 
 
@@ -79,9 +81,9 @@ def colmap_steps(given, out):
             cameras.lens_file(given, out), cameras.housing_file(given, out), out / start_lens.FILE),
                    makes=out / start_lens.FILE, reads=[*lens_files(given), given.housing],
                    before=lambda: write_cameras(given, out))
-    yield matching.step(given, found, file, lambda: prepare_matches(given, file, out),
+    yield matching.step(given, found, file, lambda: prepare_matches(given, found, file, out),
                         reads=lens_files(given) if given.lens_model else [out / start_lens.FILE],
-                        settings=["--keep-all"] if given.keep_all else [])
+                        settings=["--keep-all"] if given.keep_all else list(given.doubled))
     refine = None if given.lens_model else False
     yield Step("poses", colmap.mapper(file, given.images, models, refine, more=more), makes=models / "best",
                anew=[models], before=models.mkdir, excuse=colmap.NO_MODEL,
