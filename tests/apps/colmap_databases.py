@@ -40,7 +40,7 @@ class Databases(InFolder):
                 connection.execute("INSERT INTO images VALUES (?, ?, 1)", (number, photograph))
                 connection.execute("INSERT INTO keypoints VALUES (?, ?, 6, ?)",
                                    (number, count, keypoints(count, finest, number)))
-                connection.execute("INSERT INTO descriptors VALUES (?, ?, 128, ?)", (number, count, b"\0" * 128))
+                connection.execute("INSERT INTO descriptors VALUES (?, ?, 128, ?)", (number, count, bytes(128 * count)))
         return file
 
     def model(self, folder, names, focal=400):

@@ -139,8 +139,9 @@ class LeftOut(Databases):
 
     def test_a_photograph_that_has_the_known_length_is_refused(self):
         text = "images:0.jpg,dark.jpg,2"
-        with self.assertRaisesRegex(Failure, f"--scale-from {text}: dark.jpg is left out, because it is dark or without "
-                                    "contrast, with 3 features; name another photograph, or give --keep-all"):
+        said = (f"--scale-from {text}: dark.jpg is left out, because it is dark or without contrast, with 3 features; "
+                "name another photograph, or give --keep-all")
+        with self.assertRaisesRegex(Failure, said):
             self.leave_out(needed={"0.jpg", "dark.jpg", "2"}, scale_from=text)
         self.assertEqual(len(database.names(self.file)), 9)
 

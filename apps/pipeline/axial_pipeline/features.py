@@ -42,22 +42,24 @@ def take_weak_features(features, command_of, out, tell=print):
         tell(f"    {len(wanted)} of {len(found)} photographs have few features, as in haze or over sand: weaker "
              "ones are taken, too")
     for threshold in (*RUNGS, WEAK):
-        take(features, lacking(found, threshold), command_of, threshold, out)
-        found = database.features(features)
+        sizes = {name: found[name].size for name in lacking(found, threshold)}
+        if sizes:
+            take(features, sizes, command_of, threshold, out)
+            found = database.features(features)
 
 
-def take(features, wanted, command_of, threshold, out):
-    """Replaces the features of the photographs `wanted` (names) by those with this threshold. The rest as for
-    take_weak_features()."""
-    found, low, names = database.features(features), out / LOW, out / "weak_features.txt"
+def take(features, sizes, command_of, threshold, out):
+    """Replaces the features of photographs by those with this threshold. `sizes`: of the photographs, by name. The
+    rest as for take_weak_features()."""
+    low, names = out / LOW, out / "weak_features.txt"
     for path in colmap.database_files(low):
         files.clear(path)
-    for number, size in enumerate(sorted({found[name].size for name in wanted}), 1):  # COLMAP skips other sizes
-        files.write(names, "".join(f"{name}\n" for name in wanted if found[name].size == size))
+    for number, size in enumerate(sorted(set(sizes.values())), 1):  # COLMAP skips other sizes
+        files.write(names, "".join(f"{name}\n" for name in sizes if sizes[name] == size))
         end = f"-{number}" if number > 1 else ""
         logged(command_of(low, names, threshold), out / "logs" / f"weak-features{end}.log", "features")
     if database.names(low) is not None:
-        database.take_features(features, low, set(wanted))
+        database.take_features(features, low, sizes)
     for path in (*colmap.database_files(low), names):
         files.clear(path)
 

@@ -3,11 +3,12 @@
 
 import argparse
 import fnmatch
+import itertools
 import os
 import pathlib
 
-from . import (cameras, cluster, colmap, database, doubles, estimates, files, first_checks, lenses, masks, matching,
-               photographs, poses, positions)
+from . import (cameras, cluster, colmap, database, doubles, estimates, files, first_checks, first_look, lenses,
+               masks, matching, photographs, poses, positions)
 from .failure import Failure
 from .option_files import find_option, has_option
 from .ownership import ORDER, WRITES, is_record
@@ -51,8 +52,8 @@ def options(script_folder, description):
                         help="lens model that COLMAP calibrates, so that it absorbs the refraction (default: COLMAP "
                         "keeps the lens that lens and port give; if photographs have no pose then, it calibrates "
                         "this lens)")
-    parser.add_argument("--check", action="store_true", help="check all inputs, print what was found and how much "
-                        "time, memory and disk space the run needs, and end")
+    parser.add_argument("--check", action="store_true", help="check all inputs, look at the photographs, print "
+                        "what was found and how much time, memory and disk space the run needs, and end")
     parser.add_argument("--keep-all", action="store_true", help="use blurred, dark and doubled photographs, too")
     for name, program in MORE_OPTIONS.items():
         parser.add_argument(f"--{name}", default="",
@@ -304,7 +305,8 @@ def doubled(given, images):
 
 
 def found_in(given, images, lens_lines):
-    """Checks that need the photographs and the programs. Returns what was found."""
+    """Checks that need the photographs and the programs. Returns what was found, for --check. COLMAP looks at the
+    photographs when its rows are read."""
     names = used(given, images)
     first_checks.check_refine(given)
     first_checks.check_scale(given, names)
@@ -316,4 +318,6 @@ def found_in(given, images, lens_lines):
     needs = estimates.needs_of(given, sizes)
     for line in estimates.warnings_about(needs, pathlib.Path(given.output)):
         print(f"warning: {line}", flush=True)
-    return list(first_checks.rows(given, images, lens_lines, needs))
+    found = first_checks.rows(given, images, lens_lines, needs)
+    looked = {name: images[name].size for name in names if name not in given.doubled}
+    return itertools.chain(found, first_look.rows(given, looked)) if given.check else []
