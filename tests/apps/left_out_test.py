@@ -165,6 +165,21 @@ class InARun(StandIns):
     def test_they_can_be_kept(self):
         self.assertNotIn("copies", self.ended(*self.options, "--keep-all").stdout)
 
+    def test_a_photograph_that_was_left_out_has_no_known_length(self):
+        """In a run, and in one that continues after the matches."""
+        Databases.database(self, {**{f"{i}.png": (2000, SHARP) for i in range(3)}, "copy.png": (3, SHARP)}, "found.db")
+        with (self.folder / "colmap").open("a") as script:
+            script.write('[ "$1" != feature_extractor ] || cp found.db out/features.db\n')
+        (self.folder / "images" / "copy.png").write_bytes(PHOTOGRAPHS[1] + b"other")
+        scale = ["--scale-from", "images:0.png,copy.png,2"]
+        said = ("reconstruct: --scale-from images:0.png,copy.png,2: copy.png is left out, because it is dark or "
+                "without contrast, with 3 features; name another photograph, or give --keep-all\n")
+        self.assertEqual(self.ended(*self.options, *scale).stderr, said)
+        self.assertEqual(self.ended(*self.options).stderr, "")
+        again = self.ended(*self.options, *scale)
+        self.assertEqual((again.stderr, again.stdout.count("done before")), (said, 4))
+        self.assertEqual(self.ended(*self.options, *scale, "--keep-all").stderr, "")
+
     def test_another_choice_repeats_the_matches(self):
         self.ended(*self.options)
         again = self.ended(*self.options, "--scale-from", "images:0.png,copy.png,2")

@@ -24,11 +24,12 @@ def found_in(file, doubled):
     return wrong | {name: (DOUBLED, f"the same view as {twin}") for name, twin in alike.items()}
 
 
-def refuse_needed(wrong, needed, scale_from):
-    """Fails if a photograph that would be left out has an end of the length in --scale-from."""
-    name = next((name for name in sorted(needed) if name in wrong), None)
+def refuse_needed(reasons, needed, scale_from):
+    """Fails if a photograph that is left out has an end of the length in --scale-from. `reasons`: words by name, as
+    in database.left_out()."""
+    name = next((name for name in sorted(needed) if name in reasons), None)
     if name:
-        raise Failure(f"--scale-from {scale_from}: {name} is left out, because it is {wrong[name][1]}; name another "
+        raise Failure(f"--scale-from {scale_from}: {name} is left out, because it is {reasons[name]}; name another "
                       "photograph, or give --keep-all")
 
 
@@ -37,9 +38,10 @@ def leave_out(found, file, doubled, needed=(), scale_from=""):
     names. `found`: the database with the features of all photographs. `doubled`: as doubles.identical(). Fails, and
     changes nothing, if one of them is among `needed`, the photographs that `scale_from` names."""
     wrong = found_in(found, doubled)
-    refuse_needed(wrong, needed, scale_from)
-    if wrong:
-        database.leave_out(file, {name: words for name, (_, words) in wrong.items()})
+    reasons = {name: words for name, (_, words) in wrong.items()}
+    refuse_needed(reasons, needed, scale_from)
+    if reasons:
+        database.leave_out(file, reasons)
     for kind in (BLURRED, DARK, DOUBLED):
         names = sorted(name for name, one in wrong.items() if one[0] == kind)
         if names:

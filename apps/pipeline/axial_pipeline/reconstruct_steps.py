@@ -4,7 +4,7 @@
 import pathlib
 import shlex
 
-from . import (cameras, colmap, features, left_out, lenses, masks, matching, poses, positions, start_lens,
+from . import (cameras, colmap, database, features, left_out, lenses, masks, matching, poses, positions, start_lens,
                still_features, turns)
 from .option_files import find_option, has_option, read_by
 from .ownership import WRITES
@@ -62,6 +62,14 @@ def prepare_matches(given, found, file, out):
     if not given.keep_all:
         left_out.leave_out(found, file, given.doubled, poses.scale_names(given), given.scale_from)
     start_lens.set_in(file, given, out)
+
+
+def prepare_refining(given, out, refine_into):
+    """Refuses a length between photographs that were left out, and turns the lenses of turned photographs.
+    `refine_into`: the command of RefinePoses by its output folder."""
+    left_out.refuse_needed(database.left_out(out / "database.db"), poses.scale_names(given), given.scale_from)
+    if given.cameras:
+        turns.choose(given, out, refine_into)
 
 
 def colmap_steps(given, out):
@@ -262,7 +270,7 @@ def steps_without_names_of_files(given, out):
     yield Step("refine", command, makes=Report(refined / "report.json"),
                reads=[*lens_files(given), given.housing, *([known_positions] if known_positions else []),
                       *reads_of("refine-poses", command, given)],
-               before=lambda: turns.choose(given, out, refine_into) if given.cameras else None)
+               before=lambda: prepare_refining(given, out, refine_into))
     if "densify" not in wanted_steps(given):
         return
     command = programs.import_scene(refined, given.images, scene, refined / "housing.json")
