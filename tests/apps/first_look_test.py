@@ -131,7 +131,8 @@ class Looks(Databases):
 
     def test_a_failure_of_colmap_is_one_line(self):
         self.put_script("colmap", "exit 3")
-        with self.assertRaisesRegex(Failure, "--images images: COLMAP could not find and match features .*exit code 3"):
+        with self.assertRaisesRegex(Failure, r"^--images images: COLMAP could not find and match features of "
+                                    r"photographs made smaller \(features: exit code 3\)$"):
             self.rows(["a.jpg", "b.jpg"])
 
     def test_nothing_is_left(self):

@@ -132,8 +132,9 @@ def look(given, sizes, chosen):
             pairs = neighbours_in(sorted(sizes.keys() - wrong.keys()), found)
             return Look(plain, found, wrong, match(file, pairs) if pairs else {})
         except (Failure, sqlite3.Error) as error:
+            reason, *_ = str(error).partition(", its output is in ")  # which is removed
             raise Failure(f"--images {given.images}: COLMAP could not find and match features of photographs made "
-                          f"smaller ({error})") from None
+                          f"smaller ({reason})") from None
 
 
 def contrast_in_words(look):
