@@ -23,6 +23,7 @@ COLMAP = """case "$*" in *--help*) echo "--SiftExtraction.use_gpu --SiftExtracti
 echo "$*" >> {folder}/commands
 case "$*" in
   *peak_threshold*) cp {folder}/weak.db "$3" ;;
+  matches_importer*) cp "$3" {folder}/matched.db ;;
   feature_extractor*) [ -f "$3" ] || cp {folder}/plain.db "$3" ;;
 esac
 """
@@ -91,6 +92,7 @@ class Looks(Databases):
             "overlap": ["about 100% between neighbours by name (median of 3 pairs; 100% to 100%)"]})
         self.assertIn("--SiftExtraction.max_image_size 640", self.commands()[0])
         self.assertEqual(len(self.commands()), 2)
+        self.assertEqual({one.count for one in database.features(self.folder / "matched.db").values()}, {800})
 
     def test_photographs_that_do_no_good_have_no_part_in_the_overlap(self):
         photographs = {"0.jpg": (2000, SHARP), "1.jpg": (1500, BLURRED), "2.jpg": (2000, SHARP), "3.jpg": (2000, SHARP),
