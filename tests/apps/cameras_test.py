@@ -264,7 +264,7 @@ class Turned(CamerasCase):
 
 class WeakFeatures(InFolder):
     def test_photographs_of_each_size_are_given_to_colmap_by_themselves(self):
-        """COLMAP skips photographs of another size than the first one."""
+        """COLMAP skips photographs of another size than the first one. With each of three thresholds."""
         file = self.folder / "features.db"
         with sqlite3.connect(file) as base:
             base.executescript("""CREATE TABLE cameras (camera_id INTEGER, width INTEGER, height INTEGER);
@@ -276,7 +276,7 @@ class WeakFeatures(InFolder):
         (self.folder / "logs").mkdir()
         self.said_by(features.take_weak_features, file, lambda _, names, __: [self.folder / "detector", names],
                      self.folder)
-        self.assertEqual((self.folder / "seen").read_text(), "b\n.\na\nc\n.\n")
+        self.assertEqual((self.folder / "seen").read_text(), 3 * "b\n.\na\nc\n.\n")
 
 
 class InARun(StandIns):

@@ -56,7 +56,7 @@ class Jobs(InFolder):
                  "scale_from": "", "refine": "", "matcher": "exhaustive", "vocabulary": "",
                  "lens_model": "OPENCV",
                  "refine_poses": "", "densify": "", "mesh": "", "refine_mesh": "", "texture": "",
-                 "features": "", "matches": "", "poses": "", "keep_all": False, "cameras": [],
+                 "features": "", "matches": "", "poses": "", "keep_all": False, "cameras": [], "doubled": {},
                  "lenses": [str(lens)], "lines": [], "videos": [],
                  "map": "", "compare": "", "page": "",
                  "tiles": 1, "until": "cloud", "without": "",

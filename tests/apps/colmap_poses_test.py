@@ -2,71 +2,16 @@
 """Features and poses of COLMAP in `reconstruct`: databases written by hand, and stand-ins for COLMAP."""
 
 import argparse
-import contextlib
-import io
 import json
-import random
 import shutil
-import sqlite3
 import struct
 import unittest.mock
 
-from pipeline_folder import InFolder
+from colmap_databases import BLURRED, SHARP, Databases
 from programs import main
 
-from axial_pipeline import colmap, database, features, poses, start_lens
+from axial_pipeline import colmap, database, features, left_out, poses, start_lens
 from axial_pipeline.failure import Failure
-
-SHARP, BLURRED = 0.93, 3.4  # scales of the finest features [px]
-
-
-def keypoints(count, finest, seed=1):
-    """COLMAP's features: x, y and the affine shape, here a scale."""
-    draw = random.Random(seed)
-    rows = []
-    for _ in range(count):
-        scale = finest * draw.uniform(0.95, 3)
-        rows += [draw.uniform(0, 480), draw.uniform(0, 360), scale, 0, 0, scale]
-    return struct.pack(f"<{len(rows)}f", *rows)
-
-
-class Databases(InFolder):
-    def database(self, photographs, name="features.db"):
-        """`photographs`: the number of features and their finest scale, by name."""
-        file = self.folder / name
-        with contextlib.closing(sqlite3.connect(file)) as connection, connection:
-            connection.executescript(
-                "CREATE TABLE cameras (camera_id INTEGER PRIMARY KEY, model INTEGER, width INTEGER, height INTEGER,"
-                " params BLOB, prior_focal_length INTEGER);"
-                "CREATE TABLE images (image_id INTEGER PRIMARY KEY, name TEXT, camera_id INTEGER);"
-                "CREATE TABLE keypoints (image_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER, data BLOB);"
-                "CREATE TABLE descriptors (image_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER, data BLOB);"
-                "CREATE TABLE two_view_geometries (pair_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER,"
-                " data BLOB);")
-            connection.execute("INSERT INTO cameras VALUES (1, 4, 480, 360, ?, 0)",
-                               (struct.pack("<8d", 400, 400, 240, 180, 0, 0, 0, 0),))
-            for number, (photograph, (count, finest)) in enumerate(photographs.items(), 1):
-                connection.execute("INSERT INTO images VALUES (?, ?, 1)", (number, photograph))
-                connection.execute("INSERT INTO keypoints VALUES (?, ?, 6, ?)",
-                                   (number, count, keypoints(count, finest, number)))
-                connection.execute("INSERT INTO descriptors VALUES (?, ?, 128, ?)", (number, count, b"\0" * 128))
-        return file
-
-    def model(self, folder, names, focal=400):
-        """A binary model of COLMAP with images without observations."""
-        folder.mkdir(parents=True)
-        images = [struct.pack("<i7di", number, 1, 0, 0, 0, 0, 0, 0, 1) + name.encode() + b"\0" + struct.pack("<Q", 0)
-                  for number, name in enumerate(names, 1)]
-        (folder / "images.bin").write_bytes(struct.pack("<Q", len(images)) + b"".join(images))
-        (folder / "cameras.bin").write_bytes(struct.pack("<QiiQQ8d", 1, 1, 4, 480, 360, focal, focal, 240, 180,
-                                                         0, 0, 0, 0))
-        return folder
-
-    def said(self, function, *arguments):
-        with contextlib.redirect_stdout(io.StringIO()) as out:
-            function(*arguments)
-        return out.getvalue()
-
 
 class Features(Databases):
     def test_number_scale_and_spread_are_those_of_the_file(self):
@@ -76,14 +21,11 @@ class Features(Databases):
         self.assertEqual((found["a.jpg"].spread, found["b.jpg"].spread), (1, 0))
         self.assertIsNone(database.features(self.folder / "none.db"))
 
-    def test_blurred_photographs_are_found_and_left_out(self):
+    def test_blurred_photographs_are_found(self):
         photographs = {f"{i}.jpg": (2000, SHARP) for i in range(7)} | {f"{i}.jpg": (1500, BLURRED) for i in (7, 8)}
         file = self.database(photographs)
         self.assertEqual(sorted(features.blurred(database.features(file))[0]), ["7.jpg", "8.jpg"])
         self.assertIn("blurred", "\n".join(features.lines_about(file)))
-        self.assertIn("7.jpg, 8.jpg", self.said(features.leave_out_blurred, file))
-        self.assertEqual(sorted(database.names(file).values()), [f"{i}.jpg" for i in range(7)])
-        self.assertEqual(self.said(features.leave_out_blurred, file), "")
 
     def test_a_dive_without_sharp_photographs_is_kept(self):
         file = self.database({f"{i}.jpg": (900, BLURRED + 0.1 * i) for i in range(6)})
@@ -99,7 +41,7 @@ class Features(Databases):
             self.database({"hazy.jpg": (2500, SHARP)}, low.name)
             return ["mv", str(low), str(to)]
 
-        said = self.said(features.take_weak_features, file, detector, self.folder)
+        said = self.said_by(features.take_weak_features, file, detector, self.folder)
         self.assertIn("1 of 2 photographs have few features", said)
         self.assertEqual({name: one.count for name, one in database.features(file).items()},
                          {"clear.jpg": 3000, "hazy.jpg": 2500})
@@ -108,8 +50,43 @@ class Features(Databases):
     def test_weak_features_do_not_hide_blur(self):
         # Noise and traces of JPEG make fine features, but only weak ones.
         file = self.database({f"{i}.jpg": (3000, SHARP) for i in range(4)} | {"blurred.jpg": (25, BLURRED)})
-        self.assertEqual(self.said(features.take_weak_features, file, None, self.folder), "")
-        self.assertIn("blurred.jpg", self.said(features.leave_out_blurred, file))
+        self.assertEqual(self.said_by(features.take_weak_features, file, None, self.folder), "")
+        self.assertEqual(list(features.blurred(database.features(file))[0]), ["blurred.jpg"])
+
+    def detector(self, strengths):
+        """A detector. `strengths`: by name, the threshold at which a photograph has features, with their scale."""
+        def command(to, names, threshold):
+            low = {}
+            for name in names.read_text().splitlines():
+                fitting = [features for limit, features in strengths[name].items() if threshold <= limit]
+                low[name] = fitting[-1] if fitting else (0, SHARP)
+            self.asked.append((threshold, sorted(low)))
+            self.database(low, "low.db")
+            return ["mv", str(self.folder / "low.db"), str(to)]
+        self.asked = []
+        (self.folder / "logs").mkdir()
+        return command
+
+    def test_blur_is_found_in_haze(self):
+        # Simulated haze: what is left of a blurred photograph is stronger than its noise.
+        sharp = {"strong.jpg": {}, **{f"{i}.jpg": {0.004: (700, SHARP), 0.001: (4000, SHARP)} for i in range(3)}}
+        blurred = {"b.jpg": {0.004: (15, BLURRED), 0.001: (700, 1.09)},
+                   "c.jpg": {0.002: (46, BLURRED), 0.001: (300, SHARP)}}
+        file = self.database({"strong.jpg": (3000, SHARP), **{name: (2, SHARP) for name in sharp | blurred
+                                                             if name != "strong.jpg"}})
+        self.said_by(features.take_weak_features, file, self.detector(sharp | blurred), self.folder)
+        found = database.features(file)
+        self.assertEqual(sorted(features.blurred(found)[0]), ["b.jpg", "c.jpg"])
+        self.assertEqual([found[name].count for name in ("0.jpg", "b.jpg", "c.jpg")], [4000, 15, 46])
+        self.assertEqual([threshold for threshold, _ in self.asked], [0.004, 0.002, 0.001])
+        self.assertEqual(self.asked[1:], [(0.002, ["c.jpg"]), (0.001, ["0.jpg", "1.jpg", "2.jpg"])])
+
+    def test_dark_photographs_have_hardly_any_feature(self):
+        file = self.database({"a.jpg": (3000, SHARP), "b.jpg": (29, SHARP), "c.jpg": (30, SHARP)})
+        self.assertEqual(list(features.dark(database.features(file))), ["b.jpg"])
+        file.unlink()
+        file = self.database({"a.jpg": (3000, SHARP), "b.jpg": (29, SHARP), "c.jpg": (0, SHARP)})
+        self.assertEqual(features.dark(database.features(file)), {})
 
     def test_a_handful_of_features_tells_no_blur(self):
         file = self.database({f"{i}.jpg": (3000, SHARP) for i in range(4)} | {"hazy.jpg": (5, BLURRED)})
@@ -117,7 +94,7 @@ class Features(Databases):
 
     def test_nothing_is_added_to_many_features(self):
         file = self.database({"clear.jpg": (3000, SHARP)})
-        self.assertEqual(self.said(features.take_weak_features, file, None, self.folder), "")
+        self.assertEqual(self.said_by(features.take_weak_features, file, None, self.folder), "")
 
 
 class Lens(Databases):
@@ -150,7 +127,7 @@ class Poses(Databases):
             self.database({name: (2000 if name != "d.jpg" else 12, SHARP) for name in self.NAMES})
         with unittest.mock.patch.object(poses, "logged", lambda *_, **__: free and free(
                 self.folder / "colmap" / poses.FREE)):
-            return self.said(poses.take_best, file, given, self.folder, [])
+            return self.said_by(poses.take_best, file, given, self.folder, [])
 
     def test_all_photographs_need_no_second_try(self):
         self.model(self.folder / "colmap" / "0", self.NAMES)
@@ -166,15 +143,15 @@ class Poses(Databases):
         self.assertEqual(colmap.names_in(self.folder / "colmap" / "best"), set(self.NAMES[:3]))
 
     def test_photographs_that_were_left_out_are_counted_and_named(self):
-        self.database({**dict.fromkeys(self.NAMES, (2000, SHARP)), "e.jpg": (2000, BLURRED)})
+        self.database({**dict.fromkeys(self.NAMES, (2000, SHARP)), "e.jpg": (2000, SHARP)})
         file = self.folder / "database.db"
         shutil.copyfile(self.folder / "features.db", file)
-        features.leave_out_blurred(file)
+        self.said_by(left_out.leave_out, self.folder / "features.db", file, {"e.jpg": "a.jpg"})
         self.model(self.folder / "colmap" / "0", self.NAMES)
-        said = self.said(poses.take_best, file, self.given(), self.folder, [])
+        said = self.said_by(poses.take_best, file, self.given(), self.folder, [])
         self.assertEqual(said.splitlines(), ["    4 of 5 photographs have poses",
                                              "    warning: 1 photographs have no pose",
-                                             "    no pose: e.jpg: blurred, and left out"])
+                                             "    no pose: e.jpg: the same file as a.jpg, and left out"])
 
     def test_photographs_that_got_a_pose_later_count(self):
         self.model(self.folder / "colmap" / "0", self.NAMES[:2])

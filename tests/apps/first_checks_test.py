@@ -116,12 +116,13 @@ class Estimates(InFolder):
 
 @unittest.skipUnless(shutil.which("colmap"), "COLMAP is not installed")
 class Checked(ProgramTest):
-    """The whole script, with the programs of the build. COLMAP is never run on photographs."""
+    """The whole script, with the programs of the build. COLMAP looks at the photographs for
+    --check only."""
 
     def setUp(self):
         super().setUp()
         for number in range(3):
-            write(self.path("images", f"{number}.png"), grey_png([bytes(48)] * 36))
+            write(self.path("images", f"{number}.png"), grey_png([bytes([number] * 48)] * 36))
         write(self.path("lens.txt"), "1 PINHOLE 48 36 40 40 24 18\n")
         write(self.path("housing.json"), housing_with(FLAT))
 
@@ -146,7 +147,8 @@ class Checked(ProgramTest):
                            "--features=--SiftExtraction.max_num_features 100")
         self.assertEqual((ended.returncode, ended.stderr), (0, ""))
         words = [line[:12].strip() for line in ended.stdout.splitlines()]
-        self.assertEqual(words, ["photographs", "lens", "housing", "scale", "time", "memory", "disk", "No fault was"])
+        self.assertEqual(words, ["photographs", "lens", "housing", "scale", "time", "memory", "disk", "looked at",
+                                 "contrast", "contrast", "blur", "overlap", "No fault was"])
         self.assertIn("3 of 48 x 36 pixels", ended.stdout)
         self.assertIn("main: flat, distance_m 0.02, n_water 1.333", ended.stdout)
         self.assertFalse(os.path.exists(self.path("out")))

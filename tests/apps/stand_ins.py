@@ -12,7 +12,7 @@ import unittest
 from programs import grey_png
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
-PHOTOGRAPH = grey_png([bytes(4)] * 3)
+PHOTOGRAPHS = [grey_png([bytes([number] * 4)] * 3) for number in range(3)]
 # A stand-in for every program of the pipeline; its file name tells which one. It runs in the folder
 # above `out`. In a step, it appends its command line to the file `commands` and writes the files that
 # the next program reads. If there is a pipe `pipe-NAME`, the program opens it and sleeps, so that the
@@ -62,8 +62,8 @@ class StandIns(unittest.TestCase):
         for name in ("lens", "housing"):
             (self.folder / name).touch()
         (self.folder / "images").mkdir()
-        for number in range(3):
-            (self.folder / "images" / f"{number}.png").write_bytes(PHOTOGRAPH)
+        for number, photograph in enumerate(PHOTOGRAPHS):
+            (self.folder / "images" / f"{number}.png").write_bytes(photograph)
 
     def start(self, *more):
         process = subprocess.Popen(

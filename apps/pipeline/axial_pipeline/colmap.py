@@ -50,11 +50,22 @@ def features(database, images, camera_model, parameters=None, threads=None, mask
             *on_the_cpu("feature_extractor", EXTRACTION, threads), *more]
 
 
+def of_extraction(option):
+    """The name of an option of features in the installed version of COLMAP."""
+    known = help_of("feature_extractor")
+    family = next((family for family in EXTRACTION if f"--{family}.{option} " in known), EXTRACTION[0])
+    return f"--{family}.{option}"
+
+
 def weak_features(names, threshold):
     """The options for features with little contrast, of the photographs that the file `names` lists."""
-    known = help_of("feature_extractor")
-    family = next((family for family in EXTRACTION if f"--{family}.peak_threshold " in known), EXTRACTION[0])
-    return ["--image_list_path", names, f"--{family}.peak_threshold", threshold]
+    return ["--image_list_path", names, of_extraction("peak_threshold"), threshold]
+
+
+def smaller(side):
+    """The options for features of photographs whose longer side is at most `side` [px]. COLMAP states places and
+    scales in pixels of the photographs as they are."""
+    return [of_extraction("max_image_size"), side]
 
 
 def matches(database, matcher, threads=None, more=()):
@@ -63,6 +74,12 @@ def matches(database, matcher, threads=None, more=()):
     command = "vocab_tree_matcher" if matcher == "vocabulary" else f"{matcher}_matcher"
     return ["colmap", command, "--database_path", database, *more,
             *on_the_cpu(command, MATCHING, threads)]
+
+
+def matches_of_pairs(database, pairs):
+    """Matches the pairs of photographs that the file `pairs` lists."""
+    return ["colmap", "matches_importer", "--database_path", database, "--match_list_path", pairs,
+            "--match_type", "pairs", *on_the_cpu("matches_importer", MATCHING)]
 
 
 def mapper(database, images, models, refine=None, threads=None, more=()):

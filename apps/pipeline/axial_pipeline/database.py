@@ -79,14 +79,21 @@ def take_features(file, source, wanted):
                     connection.execute(f"INSERT INTO {table} VALUES (?, ?, ?, ?)", (ids[name], *row))
 
 
-def leave_out(file, left_out):
-    """Removes photographs (names) with their features."""
+def leave_out(file, reasons):
+    """Removes photographs with their features. `reasons`: words by name, which left_out() returns later."""
     with opened(file) as connection:
-        for name in left_out:
+        connection.execute("CREATE TABLE IF NOT EXISTS left_out (name TEXT PRIMARY KEY, reason TEXT)")
+        for name, reason in reasons.items():
+            connection.execute("INSERT OR REPLACE INTO left_out VALUES (?, ?)", (name, reason))
             for table in ("keypoints", "descriptors"):
                 connection.execute(f"DELETE FROM {table} WHERE image_id IN "
                                    "(SELECT image_id FROM images WHERE name = ?)", (name,))
             connection.execute("DELETE FROM images WHERE name = ?", (name,))
+
+
+def left_out(file):
+    """Why photographs were left out, by name."""
+    return dict(rows_of(file, "SELECT name, reason FROM left_out ORDER BY name") or [])
 
 
 def set_lenses(file, lens_of):

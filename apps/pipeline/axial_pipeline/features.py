@@ -9,37 +9,57 @@ from .running import logged
 
 ENOUGH = 1000        # features of a photograph; with fewer, COLMAP's detector takes weaker ones, too
 WEAK = 0.001         # the threshold of weak features; COLMAP's own is 0.0067
+RUNGS = (0.004, 0.002)  # thresholds in between, for photographs with too few features to tell blur
 SCARCE = 300         # features that are few even so
 BLURRED = 2          # times the finest features of the other photographs, at least
 LEAST_BLUR = 1.8     # finest features of a blurred photograph [px]; sharp ones have 0.93
-JUDGED = 20          # features that tell blur; a photograph with fewer counts as sharp
-MOST_BLURRED = 0.5   # if more of the photographs are blurred, none counts as blurred
+JUDGED = 10          # features that tell blur; a photograph with fewer counts as sharp
+DARK = 30            # features, weak ones among them; with fewer matches, COLMAP's mapper finds no pose
+MOST_WRONG = 0.5     # if more of the photographs are blurred or dark, none is
 LOW = "weak_features.db"
 
 
-def take_weak_features(features, command_of, out):
-    """Adds weak features to the photographs that have few, except blurred ones: their weak features are noise
-    and traces of JPEG, which are as fine as the features of sharp photographs and would hide the blur.
+def lacking(found, threshold):
+    """The photographs that need weaker features: to tell blur, or more features unless they are blurred. Weak
+    features of blurred photographs are noise and traces of JPEG, which are as fine as the features of sharp
+    photographs and would hide the blur."""
+    if threshold in RUNGS:
+        return [name for name, one in found.items() if one.count < JUDGED]
+    names_of_blurred, _ = blurred(found)
+    return [name for name, one in found.items() if one.count < ENOUGH and name not in names_of_blurred]
+
+
+def take_weak_features(features, command_of, out, tell=print):
+    """Adds weak features to the photographs that have few, except blurred ones. Where there are too few to tell
+    blur, thresholds in between come first, because noise is weaker than what is left of the scene.
     `features`: COLMAP's database. `command_of`: the detector's command by database, file with names of
-    photographs, and threshold."""
+    photographs, and threshold. `tell`: gets a line for the user."""
     found = database.features(features)
     if found is None:
         return
-    names_of_blurred, _ = blurred(found)
-    wanted = [name for name, one in found.items() if one.count < ENOUGH and name not in names_of_blurred]
-    if not wanted:
-        return
+    wanted = lacking(found, WEAK)
+    if wanted:
+        tell(f"    {len(wanted)} of {len(found)} photographs have few features, as in haze or over sand: weaker "
+             "ones are taken, too")
+    for threshold in (*RUNGS, WEAK):
+        sizes = {name: found[name].size for name in lacking(found, threshold)}
+        if sizes:
+            take(features, sizes, command_of, threshold, out)
+            found = database.features(features)
+
+
+def take(features, sizes, command_of, threshold, out):
+    """Replaces the features of photographs by those with this threshold. `sizes`: of the photographs, by name. The
+    rest as for take_weak_features()."""
     low, names = out / LOW, out / "weak_features.txt"
     for path in colmap.database_files(low):
         files.clear(path)
-    print(f"    {len(wanted)} of {len(found)} photographs have few features, as in haze or over sand: weaker "
-          "ones are taken, too", flush=True)
-    for number, size in enumerate(sorted({found[name].size for name in wanted}), 1):  # COLMAP skips other sizes
-        files.write(names, "".join(f"{name}\n" for name in wanted if found[name].size == size))
+    for number, size in enumerate(sorted(set(sizes.values())), 1):  # COLMAP skips other sizes
+        files.write(names, "".join(f"{name}\n" for name in sizes if sizes[name] == size))
         end = f"-{number}" if number > 1 else ""
-        logged(command_of(low, names, WEAK), out / "logs" / f"weak-features{end}.log", "features")
+        logged(command_of(low, names, threshold), out / "logs" / f"weak-features{end}.log", "features")
     if database.names(low) is not None:
-        database.take_features(features, low, set(wanted))
+        database.take_features(features, low, sizes)
     for path in (*colmap.database_files(low), names):
         files.clear(path)
 
@@ -52,7 +72,13 @@ def blurred(found):
         return {}, 0
     usual = statistics.median(judged.values())
     names = {name: fine for name, fine in judged.items() if fine > max(LEAST_BLUR, BLURRED * usual)}
-    return (names if len(names) <= MOST_BLURRED * len(found) else {}), usual
+    return (names if len(names) <= MOST_WRONG * len(found) else {}), usual
+
+
+def dark(found):
+    """The Features of the photographs that have too few for a pose, by name."""
+    few_features = {name: one for name, one in found.items() if one.count < DARK}
+    return few_features if len(few_features) <= MOST_WRONG * len(found) else {}
 
 
 def lines_about(features):
@@ -72,12 +98,3 @@ def lines_about(features):
     if names:
         yield (f"warning: {few(list(names))}: blurred (finest features {min(names.values()):.1f} px or more, "
                f"{usual:.1f} px in the others)")
-
-
-def leave_out_blurred(file):
-    """Removes blurred photographs from COLMAP's database. Prints their names."""
-    names, _ = blurred(database.features(file) or {})
-    if names:
-        database.leave_out(file, names)
-        print(f"    {len(names)} blurred photographs are left out (--keep-all keeps them): {few(list(names))}",
-              flush=True)

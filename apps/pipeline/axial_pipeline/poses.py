@@ -12,7 +12,7 @@ RECORD = "registered.json"
 FREE = "free_lens"          # folder of the models with a lens that COLMAP calibrated
 FOCAL = (0.7, 1.5)          # the focal length that COLMAP may find, in focal lengths of the start
 FEW_FEATURES, FEW_MATCHES = 300, 30
-BLURRED = "blurred, and left out"
+LEFT_OUT = "{}, and left out"
 
 
 def focal_lengths(model):
@@ -65,17 +65,12 @@ def try_free_lens(file, given, models, options, log):
             files.clear(model)
 
 
-def left_out_before(out, kept):
-    """The photographs with features in the folder `out` that are not among those matched, `kept`."""
-    return sorted({*(database.names(out / "features.db") or {}).values()} - {*kept})
-
-
 def take_best(file, given, out, options):
     """Renames the best model to colmap/best in the folder `out`. If COLMAP's lens was fixed and photographs
     have no pose, tries a free lens first. Writes and prints which photographs have no pose."""
     names, models = database.names(file), out / "colmap"
     photographs = sorted(names.values()) if names else []
-    blurred = left_out_before(out, photographs) if names else []
+    before = {name: LEFT_OUT.format(reason) for name, reason in database.left_out(file).items()}
     first = best_first([models], given)
     if not given.lens_model and (not first or first[0][1] < len(photographs)):
         count = f"{first[0][1]} of {len(photographs)} photographs have" if first else "no photograph has"
@@ -87,8 +82,8 @@ def take_best(file, given, out, options):
     best, count = found[0]
     left_out = reasons(file, colmap.names_in(best), [(model, n) for model, n in found[1:]
                                                      if model.parent == best.parent])
-    left_out |= dict.fromkeys(blurred, BLURRED)
-    record = {"photographs": (len(photographs) or count) + len(blurred), "registered": count, "left_out": left_out}
+    left_out |= before
+    record = {"photographs": (len(photographs) or count) + len(before), "registered": count, "left_out": left_out}
     print_lines(lines_of(record))
     others = [str(n) for model, n in found[1:] if model.parent == best.parent]
     if others:

@@ -3,11 +3,12 @@
 
 import argparse
 import fnmatch
+import itertools
 import os
 import pathlib
 
-from . import (cameras, cluster, colmap, database, estimates, files, first_checks, lenses, masks, matching,
-               photographs, positions, video)
+from . import (cameras, cluster, colmap, database, doubles, estimates, files, first_checks, first_look, lenses,
+               masks, matching, photographs, poses, positions, video)
 from .failure import Failure
 from .option_files import find_option, has_option
 from .ownership import ORDER, WRITES, is_record
@@ -55,9 +56,9 @@ def options(script_folder, description):
                         help="lens model that COLMAP calibrates, so that it absorbs the refraction (default: COLMAP "
                         "keeps the lens that lens and port give; if photographs have no pose then, it calibrates "
                         "this lens)")
-    parser.add_argument("--check", action="store_true", help="check all inputs, print what was found and how much "
-                        "time, memory and disk space the run needs, and end")
-    parser.add_argument("--keep-all", action="store_true", help="use blurred photographs, too")
+    parser.add_argument("--check", action="store_true", help="check all inputs, look at the photographs, print "
+                        "what was found and how much time, memory and disk space the run needs, and end")
+    parser.add_argument("--keep-all", action="store_true", help="use blurred, dark and doubled photographs, too")
     for name, program in MORE_OPTIONS.items():
         parser.add_argument(f"--{name}", default="",
                             help=f"more options for {program}, in one word" +
@@ -294,6 +295,7 @@ def check_photographs(given, lens_lines):
     for line in given.lines:
         print(f"{given.images}: {line}", flush=True)
     given.lines += video.lines_about(pathlib.Path(given.output)) if given.videos else []
+    given.doubled = doubled(given, images)
     matching.check(given)
     if pathlib.Path(given.output).is_relative_to(given.images):
         raise Failure(f"--output {given.output}: lies in the folder of the images")
@@ -302,15 +304,34 @@ def check_photographs(given, lens_lines):
     return found_in(given, images, lens_lines)
 
 
+def used(given, images):
+    """The names of the photographs that have a lens."""
+    return [name for one in given.cameras for name in one.names] or list(images)
+
+
+def doubled(given, images):
+    """Finds photographs with the same bytes, as doubles.identical(), and says which are left out. None with
+    --keep-all."""
+    found = {} if given.keep_all else doubles.identical(given.images, used(given, images), poses.scale_names(given))
+    if found:
+        pairs = [f"{name} is {twin}" for name, twin in found.items()]
+        print(f"{given.images}: {len(found)} photographs are copies of others, and are left out (--keep-all keeps "
+              f"them): {photographs.few(pairs)}", flush=True)
+    return found
+
+
 def found_in(given, images, lens_lines):
-    """Checks that need the photographs and the programs. Returns what was found."""
-    used = [name for one in given.cameras for name in one.names] or list(images)
-    first_checks.check_scale(given, used)
+    """Checks that need the photographs and the programs. Returns what was found, for --check. COLMAP looks at the
+    photographs when its rows are read."""
+    names = used(given, images)
+    first_checks.check_scale(given, names)
     lens_lines = first_checks.check_cameras(given) if given.cameras else lens_lines
-    sizes = [images[name].size for name in used if images[name].size]
+    sizes = [images[name].size for name in names if images[name].size]
     if not sizes:
         return []
     needs = estimates.needs_of(given, sizes)
     for line in estimates.warnings_about(needs, pathlib.Path(given.output)):
         print(f"warning: {line}", flush=True)
-    return list(first_checks.rows(given, images, lens_lines, needs))
+    found = first_checks.rows(given, images, lens_lines, needs)
+    looked = {name: images[name].size for name in names if name not in given.doubled}
+    return itertools.chain(found, first_look.rows(given, looked)) if given.check else []

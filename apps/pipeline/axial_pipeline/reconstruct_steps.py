@@ -4,7 +4,8 @@
 import pathlib
 import shlex
 
-from . import cameras, colmap, features, lenses, masks, matching, poses, positions, start_lens, still_features, turns, video
+from . import (cameras, colmap, database, features, left_out, lenses, masks, matching, poses, positions, start_lens,
+               still_features, turns, video)
 from .option_files import find_option, has_option, read_by
 from .ownership import WRITES
 from .programs import Programs, words_of
@@ -55,11 +56,20 @@ def write_cameras(given, out):
         cameras.write(given, out)
 
 
-def prepare_matches(given, file, out):
-    """Leaves out blurred photographs, and sets the lens for COLMAP."""
+def prepare_matches(given, found, file, out):
+    """Leaves out photographs that do no good, and sets the lens for COLMAP. `found`: the database with the
+    features of all photographs."""
     if not given.keep_all:
-        features.leave_out_blurred(file)
+        left_out.leave_out(found, file, given.doubled, poses.scale_names(given), given.scale_from)
     start_lens.set_in(file, given, out)
+
+
+def prepare_refining(given, out, refine_into):
+    """Refuses a length between photographs that were left out, and turns the lenses of turned photographs.
+    `refine_into`: the command of RefinePoses by its output folder."""
+    left_out.refuse_needed(database.left_out(out / "database.db"), poses.scale_names(given), given.scale_from)
+    if given.cameras:
+        turns.choose(given, out, refine_into)
 
 
 def colmap_steps(given, out):
@@ -79,9 +89,9 @@ def colmap_steps(given, out):
             cameras.lens_file(given, out), cameras.housing_file(given, out), out / start_lens.FILE),
                    makes=out / start_lens.FILE, reads=[*lens_files(given), given.housing],
                    before=lambda: write_cameras(given, out))
-    yield matching.step(given, found, file, lambda: prepare_matches(given, file, out),
+    yield matching.step(given, found, file, lambda: prepare_matches(given, found, file, out),
                         reads=lens_files(given) if given.lens_model else [out / start_lens.FILE],
-                        settings=["--keep-all"] if given.keep_all else [])
+                        settings=["--keep-all"] if given.keep_all else list(given.doubled))
     refine = None if given.lens_model else False
     yield Step("poses", colmap.mapper(file, given.images, models, refine, more=more), makes=models / "best",
                anew=[models], before=models.mkdir, excuse=colmap.NO_MODEL,
@@ -262,8 +272,7 @@ def steps_without_names_of_files(given, out):
     yield Step("refine", command, makes=Report(refined / "report.json"),
                reads=[*lens_files(given), given.housing, *([known_positions] if known_positions else []),
                       *reads_of("refine-poses", command, given)],
-               before=lambda: turns.choose(given, out, refine_into) if given.cameras else None,
-               after=lambda: poses.print_changes(out))
+               before=lambda: prepare_refining(given, out, refine_into), after=lambda: poses.print_changes(out))
     if "densify" not in wanted_steps(given):
         return
     command = programs.import_scene(refined, given.images, scene, refined / "housing.json")

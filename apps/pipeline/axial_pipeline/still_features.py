@@ -111,9 +111,14 @@ def each_once(features, distance):
     return [one for cell in kept.values() for one in cell]
 
 
+def move_of(width):
+    """By how many pixels features at rest may move in photographs of this width."""
+    return LARGEST_MOVE * max(1, width / COLMAP_WIDTH)
+
+
 def at_rest(photographs, width):
     """(x, y, scale, share of photographs) of the features at rest. `photographs`: Features."""
-    largest_move = LARGEST_MOVE * max(1, width / COLMAP_WIDTH)
+    largest_move = move_of(width)
     sample = [(one, cells_of(one, 2 * largest_move)) for one in photographs]
     found = []
     for reference, _ in sample_of(sample, REFERENCES):

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Photographs that show the same from the same place: copies of a file, and frames of a burst without motion.
+
+Measured on photographs of 480 x 360 pixels from the scenes reef, reef-hazy and sand, with further noise of 2 grey
+levels: of the 200 coarsest features, 96, 75 and 43 % are at the same place, with the same look, in a photograph
+with other noise; 2, 12 and 6 % after a move of 1.5 pixels; none in the next photograph of the dive."""
+
+import collections
+import contextlib
+import hashlib
+import pathlib
+import sqlite3
+
+from . import still_features
+from .database import CELLS
+from .failure import Failure
+from .photographs import LEAST
+
+CHUNK = 1 << 20       # bytes of a file that are read at once
+COARSE = 200          # features of a photograph that are looked for, the coarsest
+AMONG = 2 * COARSE    # features of the other photograph among which they are looked for
+LEAST_COARSE = 50     # a photograph with fewer features tells nothing
+LEAST_SHARE = 0.4     # of the features, at the same place
+LEAST_SPREAD = 0.75   # of the cells that the features cover: an arm of a strobe covers few
+WINDOW = 10           # photographs before, by name, with which each photograph is compared
+MOST_ALIKE = 0.5      # of the photographs; if more are alike, their features move with the camera
+
+
+def digest_of(path):
+    found = hashlib.sha256()
+    with open(path, "rb") as file:
+        while chunk := file.read(CHUNK):
+            found.update(chunk)
+    return found.digest()
+
+
+def groups_by(key, names):
+    """Lists of two and more names that have the same key."""
+    groups = collections.defaultdict(list)
+    for name in names:
+        groups[key(name)].append(name)
+    return [group for group in groups.values() if len(group) > 1]
+
+
+def identical(folder, names, preferred=()):
+    """Photographs with the same bytes as another one: the name of the one that is kept, by name. `names`: files in
+    `folder`. `preferred`: names that are kept if possible. Fails if fewer than LEAST photographs differ, or if a
+    file cannot be read."""
+    folder, found = pathlib.Path(folder), {}
+    try:
+        for alike in groups_by(lambda name: (folder / name).stat().st_size, names):
+            for group in groups_by(lambda name: digest_of(folder / name), alike):
+                kept, *others = sorted(group, key=lambda name: (name not in preferred, name))
+                found.update(dict.fromkeys(others, kept))
+    except OSError as error:
+        raise Failure(f"--images {error.filename}: cannot be read: {error.strerror}") from None
+    if len(names) - len(found) < LEAST:
+        raise Failure(f"--images {folder}: all {len(names)} photographs have the same contents")
+    return dict(sorted(found.items()))
+
+
+def coarsest(features, count):
+    """The coarsest of the features of a photograph (still_features.Features)."""
+    order = sorted(range(len(features.xs)), key=lambda k: (-features.scales[k], k))[:count]
+    return still_features.Features([features.xs[k] for k in order], [features.ys[k] for k in order],
+                                   [features.scales[k] for k in order],
+                                   b"".join(map(features.descriptor, order)))
+
+
+def cells_of(features, chosen, width, height):
+    return {(int(CELLS * features.xs[k] / width), int(CELLS * features.ys[k] / height)) for k in chosen}
+
+
+def is_alike(reference, other, width, height):
+    """Whether features all over the photograph `reference` are at the same place in `other`."""
+    move, numbers = still_features.move_of(width), range(len(reference.xs))
+    if min(len(reference.xs), len(other.xs)) < LEAST_COARSE:
+        return False
+    counts = still_features.counts_of_rest(reference, [(other, still_features.cells_of(other, 2 * move))], move)
+    same = [k for k in numbers if counts[k]]
+    return (len(same) >= LEAST_SHARE * len(numbers) and len(cells_of(reference, same, width, height)) >=
+            LEAST_SPREAD * len(cells_of(reference, numbers, width, height)))
+
+
+def by_camera(connection):
+    """Width, height, and (number, name) of the photographs of each camera, in the order of the files' names."""
+    for camera, width, height in connection.execute("SELECT camera_id, width, height FROM cameras").fetchall():
+        images = connection.execute("SELECT image_id, name FROM images WHERE camera_id = ?", (camera,)).fetchall()
+        yield width, height, sorted(images, key=lambda one: (pathlib.PurePath(one[1]).name, one[1]))
+
+
+def alike_in(photographs, width, height):
+    """As alike(), for the photographs of one camera: pairs of a name and Features."""
+    kept, found = [], {}
+    for name, features in photographs:
+        among = coarsest(features, AMONG)
+        twin = next((other for other, reference in reversed(kept[-WINDOW:])
+                     if is_alike(reference, among, width, height)), None)
+        if twin:
+            found[name] = twin
+        else:
+            kept.append((name, coarsest(features, COARSE)))
+    return found
+
+
+def alike(file, left_out=()):
+    """Photographs without motion since another one: the name of the one that is kept, by name. `file`: COLMAP's
+    database with features. `left_out`: names that do not count. Nothing if `file` is no such database."""
+    found = {}
+    with contextlib.suppress(sqlite3.Error, LookupError, TypeError, ValueError), \
+            contextlib.closing(sqlite3.connect(file)) as connection:
+        for width, height, images in by_camera(connection):
+            images = [(image, name) for image, name in images if name not in left_out]
+            twins = alike_in(((name, still_features.features_in(connection, image)) for image, name in images),
+                             width, height)
+            sizes = collections.Counter(twins.values())
+            found |= {name: twin for name, twin in twins.items() if sizes[twin] + 1 <= MOST_ALIKE * len(images)}
+    return found
