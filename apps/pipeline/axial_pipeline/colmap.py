@@ -7,9 +7,10 @@ import subprocess
 
 from .failure import Failure
 
-# How versions of COLMAP call the options of features and of matches.
+# How versions of COLMAP call the options of features, of matches and of their verification.
 EXTRACTION = ("SiftExtraction", "FeatureExtraction")
 MATCHING = ("SiftMatching", "FeatureMatching")
+VERIFICATION = ("SiftMatching", "TwoViewGeometry")
 
 
 def check_installed():
@@ -57,12 +58,29 @@ def weak_features(names, threshold):
     return ["--image_list_path", names, f"--{family}.peak_threshold", threshold]
 
 
+def matching_command(matcher):
+    """The name of the command that matches the pairs of a matcher of matching.py."""
+    return {"vocabulary": "vocab_tree_matcher", "cascade": "matches_importer"}.get(matcher, f"{matcher}_matcher")
+
+
 def matches(database, matcher, threads=None, more=()):
-    """Matches features. `matcher`: "exhaustive" for all pairs of images, "sequential", "spatial" or
-    "vocabulary". `more`: further options of the matcher."""
-    command = "vocab_tree_matcher" if matcher == "vocabulary" else f"{matcher}_matcher"
+    """Matches features. `matcher`: "exhaustive" for all pairs of images, "sequential", "spatial",
+    "vocabulary" or, for a list of pairs, "cascade". `more`: further options of the command."""
+    command = matching_command(matcher)
     return ["colmap", command, "--database_path", database, *more,
             *on_the_cpu(command, MATCHING, threads)]
+
+
+def listed_pairs(file):
+    """The option for the pairs of photographs that `file` lists, two names on each line."""
+    return ["--match_list_path", file]
+
+
+def least_matches(count):
+    """The option for the least number of verified matches of a pair."""
+    known = help_of("matches_importer")
+    family = next((family for family in VERIFICATION if f"--{family}.min_num_inliers " in known), VERIFICATION[0])
+    return [f"--{family}.min_num_inliers", count]
 
 
 def mapper(database, images, models, refine=None, threads=None, more=()):

@@ -42,9 +42,10 @@ def options(script_folder, description):
     masks.add_options(parser)
     parser.add_argument("--refine", default="",
                         help="values of lens and port to estimate, as for RefinePoses (default: auto)")
-    parser.add_argument("--matcher", choices=matching.MATCHERS, default="exhaustive",
-                        help="pairs of images that COLMAP matches: all, neighbours in time, neighbours "
-                        "in space, or images that look alike (default: %(default)s)")
+    parser.add_argument("--matcher", choices=matching.MATCHERS, default="auto",
+                        help="pairs of images that COLMAP matches: all, those that overlap, neighbours in time, "
+                        "neighbours in space, or images that look alike; auto: all pairs of fewer than "
+                        f"{matching.FROM_CASCADE} images, otherwise cascade (default: %(default)s)")
     parser.add_argument("--vocabulary", default="",
                         help="vocabulary tree for COLMAP, for --matcher vocabulary")
     parser.add_argument("--lens-model", default="", choices=("", *database.LENS_MODELS), metavar="MODEL",
@@ -275,6 +276,7 @@ def check(given):
     given.lines = [*cameras.lines_about(given.cameras), *left_out]
     for line in given.lines:
         print(f"{given.images}: {line}", flush=True)
+    given.matcher = matching.chosen(given.matcher, len(used_of(given, images)))
     matching.check(given)
     given.output = str(files.resolved("--output", given.output))
     if given.earlier and is_own_mesh(pathlib.Path(given.earlier), pathlib.Path(given.output)):
@@ -286,9 +288,14 @@ def check(given):
     return found_in(given, images, lens_lines)
 
 
+def used_of(given, images):
+    """The names of the photographs that have a lens."""
+    return [name for one in given.cameras for name in one.names] or list(images)
+
+
 def found_in(given, images, lens_lines):
     """Checks that need the photographs and the programs. Returns what was found."""
-    used = [name for one in given.cameras for name in one.names] or list(images)
+    used = used_of(given, images)
     first_checks.check_refine(given)
     first_checks.check_scale(given, used)
     first_checks.check_options_of_programs(given, MORE_OPTIONS)
