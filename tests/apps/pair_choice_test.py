@@ -70,7 +70,7 @@ class Choice(unittest.TestCase):
             same = {image: [(place, 0) for place in range(30)] for image in range(number)}
             chosen = pair_choice.choose(matches_of(same))
             self.assertLessEqual(len(chosen), pair_choice.PARTNERS * number)
-            self.assertEqual(pair_choice.outside(range(number), chosen), [])
+            self.assertEqual(pair_choice.outside(pair_choice.parts_of(range(number), chosen)), [])
 
     def test_a_weak_pair_that_joins_two_parts_is_chosen(self):
         """Two dense groups of photographs: one pair of the weakest matches joins them."""
@@ -81,7 +81,7 @@ class Choice(unittest.TestCase):
         self.assertIn((0, 12), chosen)
         self.assertNotIn((1, 13), chosen)  # joins the same tracks
         self.assertLess(len(chosen), len(matches))
-        self.assertEqual(pair_choice.outside(range(24), chosen), [])
+        self.assertEqual(pair_choice.outside(pair_choice.parts_of(range(24), chosen)), [])
 
     def test_the_order_of_the_pairs_does_not_matter(self):
         matches = line(30, 2)
@@ -132,8 +132,8 @@ class Closure(unittest.TestCase):
         self.assertEqual(pair_choice.missing(ends, self.cells, set(ends)), [])
 
     def test_photographs_outside_the_largest_part_are_named(self):
-        self.assertEqual(pair_choice.outside(range(7), [(0, 1), (1, 2), (4, 5)]), [3, 4, 5, 6])
-        self.assertEqual(pair_choice.outside([], []), [])
+        self.assertEqual(pair_choice.outside(pair_choice.parts_of(range(7), [(0, 1), (1, 2), (4, 5)])), [3, 4, 5, 6])
+        self.assertEqual(pair_choice.outside(pair_choice.parts_of([], [])), [])
 
 
 if __name__ == "__main__":

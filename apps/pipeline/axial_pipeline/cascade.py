@@ -13,7 +13,7 @@ from .steps import Step
 
 OVERVIEW, CANDIDATES, PAIRS = "overview.db", "overview_pairs.txt", "match_pairs.txt"
 LEAST_MATCHES = 6  # verified, of the largest features
-FURTHER = 10       # photographs with which one is matched that chosen pairs do not join with most others
+FURTHER = 10       # most similar photographs of one that pairs do not join with most others
 
 
 def files_beside(full):
@@ -44,6 +44,7 @@ class Cascade:
     def __init__(self, features, full, words, of_positions):
         self.features, self.full, self.words, self.of_positions = features, full, words, of_positions
         self.small, self.candidates, self.pairs = (full.with_name(name) for name in (OVERVIEW, CANDIDATES, PAIRS))
+        self.alike = {}  # overview.most_similar(), from prepare() on
 
     def overview_command(self):
         return colmap.matches(self.small, "cascade", more=[
@@ -57,9 +58,9 @@ class Cascade:
             database.take_names(self.full, self.features)
             prepare()
             overview.write(self.small, self.full)
+            self.alike = overview.most_similar(self.small)
             known = overview.known_positions(self.full, self.of_positions)
-            write_pairs(self.candidates, overview.candidates(
-                database.names(self.full), overview.most_similar(self.small), known))
+            write_pairs(self.candidates, overview.candidates(database.names(self.full), self.alike, known))
 
     def match(self, pairs, number):
         """Matches pairs with all features. COLMAP skips those that it has matched before. `number`: of the
@@ -71,23 +72,24 @@ class Cascade:
               flush=True)
         logged(command, self.full.parent / "logs" / f"matches-{number}.log", "matches")
 
-    def further(self, images, alike, matches, matched):
-        """Pairs of photographs that `matches` do not join with most others, with those that look most like
-        them."""
-        return [pair for image in pair_choice.outside(images, matches)
-                for pair in overview.ordered((image, other) for other in alike[image][:FURTHER])
-                if pair not in matched]
+    def further(self, named, pairs, matched):
+        """Pairs, not in `matched`, that could join parts which `pairs` leave apart: photographs outside the
+        largest part with those that look most like them, and with their neighbours by name."""
+        parts = pair_choice.parts_of(named, pairs)
+        outside = set(pair_choice.outside(parts))
+        look_alike = [(image, other) for image in outside for other in self.alike[image][:FURTHER]]
+        return [(one, other) for one, other in overview.ordered([*look_alike, *overview.following(named)])
+                if parts[one] != parts[other] and (one, other) not in matched]
 
     def complete(self):
         """Matches with all features what the overview found, and then what is missing. Each round depends on
         the pairs of the rounds before only, so that a killed run goes on with the same pairs."""
         seen = database.matches_of_pairs(self.small)
-        images = sorted(database.names(self.full))
-        alike = overview.most_similar(self.small)
+        named = database.names(self.full)
         cells = {image: pair_choice.cell_numbers(xs, ys, size)
                  for image, xs, ys, size in database.places_of_features(self.full)}
         wanted, matched, number = pair_choice.choose(seen), set(), 0
-        wanted = overview.ordered([*wanted, *self.further(images, alike, wanted, matched)])
+        wanted = overview.ordered([*wanted, *self.further(named, wanted, matched)])
         database.name_by_ids(self.full)
         while wanted:
             number += 1
@@ -95,9 +97,9 @@ class Cascade:
             matched.update(wanted)
             found = {pair: one for pair, one in database.matches_of_pairs(self.full).items() if pair in matched}
             wanted = overview.ordered([*pair_choice.missing(found, cells, matched | set(seen)),
-                                       *self.further(images, alike, found, matched)])
+                                       *self.further(named, found, matched)])
         database.take_names(self.full, self.features)
-        print(f"    matched {len(matched)} of {len(images) * (len(images) - 1) // 2} pairs", flush=True)
+        print(f"    matched {len(matched)} of {len(named) * (len(named) - 1) // 2} pairs", flush=True)
         for path in files_beside(self.full):
             files.clear(path)
 

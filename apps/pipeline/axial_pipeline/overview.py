@@ -5,6 +5,7 @@ that are worth matching with them."""
 import array
 import contextlib
 import heapq
+import itertools
 import math
 import sqlite3
 
@@ -14,6 +15,7 @@ from .failure import Failure
 FEATURES = 200  # of a photograph
 # Photographs with which each one is matched: the most similar ones, the next ones by name, and the nearest.
 SIMILAR, BY_NAME, NEAREST = 30, 3, 10
+ALL = 45  # photographs, up to which all pairs are as few
 DEGREE = 111000  # m, of latitude
 OF_FEATURES, OF_PAIRS = ("keypoints", "descriptors"), ("matches", "two_view_geometries")
 
@@ -119,13 +121,19 @@ def ordered(pairs):
     return sorted({(min(pair), max(pair)) for pair in pairs})
 
 
+def following(named):
+    """The pairs of each photograph with the next ones by name. `named`: names by id."""
+    by_name = sorted(named, key=named.get)
+    return ordered(pair for step in range(1, BY_NAME + 1) for pair in zip(by_name, by_name[step:]))
+
+
 def candidates(named, alike, known):
     """The pairs that are matched with few features. `named`: names by id. `alike`: similar.most_similar() of
     the photographs. `known`: positions by id."""
-    by_name = sorted(named, key=named.get)
-    follow = [pair for step in range(1, BY_NAME + 1) for pair in zip(by_name, by_name[step:])]
+    if len(named) <= ALL:
+        return ordered(itertools.combinations(named, 2))
     look_alike = [(image, other) for image, others in alike.items() for other in others]
-    return ordered([*follow, *look_alike, *nearest(known)])
+    return ordered([*following(named), *look_alike, *nearest(known)])
 
 
 def most_similar(file):

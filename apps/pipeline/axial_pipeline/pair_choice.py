@@ -97,13 +97,18 @@ def missing(matches, cells, tried):
                   if others < WAYS or len(seen_by[pair[0]] & seen_by[pair[1]]) < ENOUGH)
 
 
-def outside(images, pairs):
-    """The `images` that `pairs` do not join with most of the others."""
+def parts_of(images, pairs):
+    """The part of each of the `images`. Images have the same part if `pairs` join them."""
     parts = Tracks()
     for pair in pairs:
         parts.add(pair, [(0, 0)])
+    return {image: parts.track_of((image, 0)) for image in images}
+
+
+def outside(parts):
+    """The images that are not in the part with most images. `parts`: parts_of() the images."""
     by_part = collections.defaultdict(list)
-    for image in images:
-        by_part[parts.track_of((image, 0))].append(image)
+    for image, part in parts.items():
+        by_part[part].append(image)
     largest = max(by_part.values(), key=len, default=[])
-    return sorted(set(images) - set(largest))
+    return sorted(set(parts) - set(largest))
