@@ -5,6 +5,7 @@ is missing. A stand-in for COLMAP finds the matches."""
 import argparse
 import array
 import contextlib
+import fnmatch
 import functools
 import os
 import pathlib
@@ -21,7 +22,7 @@ from pipeline_folder import InFolder
 from programs import main, run
 from stand_ins import PHOTOGRAPH, StandIns
 
-from axial_pipeline import cascade, colmap, database, matching, overview, similar, steps
+from axial_pipeline import cascade, colmap, database, matching, overview, ownership, similar, steps
 from axial_pipeline.failure import Failure
 
 SIZE, FEATURES = (80, 80), 400  # of a photograph
@@ -202,6 +203,25 @@ class Steps(WithStandIn):
         self.assertEqual(self.beside(), ["match_pairs.txt", "overview.db", "overview_pairs.txt"])
         step = self.step(matcher="exhaustive")
         self.assertTrue({self.full, *cascade.files_beside(self.full)} <= set(step.changed))
+
+    def test_all_files_belong_to_the_step(self):
+        for path in [self.full, *cascade.files_beside(self.full)]:
+            self.assertTrue(any(fnmatch.fnmatchcase(path.name, one) for one in ownership.WRITES["matches"]), path)
+
+    def test_nothing_alike_is_tried_with_neighbours_by_name(self):
+        with database.opened(self.features) as connection:
+            connection.executescript(TABLES)
+            for image in range(1, 6):
+                self.photograph(connection, image, range(100 * image, 100 * image + 16))
+        with unittest.mock.patch.object(overview, "BY_NAME", 1), unittest.mock.patch.object(cascade, "FURTHER", 0):
+            self.assertIn("    matched 4 of 10 pairs\n", self.matched())
+        self.assertEqual(self.pairs_of("database.db"), [(1, 2), (2, 3), (3, 4), (4, 5)])
+
+    def test_an_overview_that_a_kill_left_half_written_is_replaced(self):
+        self.track(10)
+        self.write("overview.db.tmp", "half" * 5000)
+        self.assertIn(" of 45 pairs\n", self.matched())
+        self.assertEqual(self.beside(), [])
 
     def test_removed_photographs_are_not_matched(self):
         self.track()

@@ -18,7 +18,9 @@ FURTHER = 10       # most similar photographs of one that pairs do not join with
 
 def files_beside(full):
     """All files that exist only during the step, beside the database `full`."""
-    return [*colmap.database_files(full.with_name(OVERVIEW)), full.with_name(CANDIDATES), full.with_name(PAIRS)]
+    small = full.with_name(OVERVIEW)
+    return [*colmap.database_files(small), small.with_name(small.name + ".tmp"), full.with_name(CANDIDATES),
+            full.with_name(PAIRS)]
 
 
 def write_pairs(file, pairs):

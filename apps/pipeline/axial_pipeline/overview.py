@@ -69,6 +69,7 @@ def write(file, full):
     files.clear(temporary)
     with contextlib.closing(sqlite3.connect(temporary)) as connection:
         connection.execute("ATTACH ? AS full", (str(full),))
+        connection.execute("PRAGMA main.journal_mode = OFF")  # a killed run leaves one file only, which is removed
         version, = connection.execute("PRAGMA full.user_version").fetchone()
         connection.execute(f"PRAGMA main.user_version = {version}")
         with connection:
