@@ -30,6 +30,7 @@ import dives  # noqa: E402, F401
 import random_dives  # noqa: E402, F401
 import lawnmower  # noqa: E402, F401
 import boards  # noqa: E402, F401
+import pair_costs  # noqa: E402, F401
 
 
 def source_state():

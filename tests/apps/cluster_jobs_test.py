@@ -137,10 +137,17 @@ class Jobs(InFolder):
             self.assertFalse(plan.exists() or record.exists())
         self.assertEqual(self.said_by(cluster.forget_damaged_plan, self.folder), "")
 
+    def test_a_job_matches_in_a_cascade(self):
+        step, _ = self.survey(matcher="cascade").step("matches")
+        self.assertEqual(step.command[:4], ["colmap", "matches_importer", "--database_path",
+                                            str(self.folder / "overview.db")])
+        self.assertEqual(step.writes, ownership.WRITES["matches"])
+
     def test_time_of_matching_grows_with_the_pairs(self):
         # 499,500 pairs of 0.9 s on 16 processors, twice: 936.6 minutes
         self.assertEqual(self.minutes("matches", images=1000), [997, 1994])
-        self.assertEqual(self.minutes("matches", images=1000, matcher="sequential"), [1060, 2120])
+        for matcher in ("sequential", "cascade"):
+            self.assertEqual(self.minutes("matches", images=1000, matcher=matcher), [1060, 2120])
 
     def test_time_of_the_check_of_all_maps_grows_with_the_images(self):
         def minutes(part, images):

@@ -157,14 +157,14 @@ class Poses(Databases):
         self.model(self.folder / "colmap" / "0", self.NAMES[:2])
         self.best(self.given(lens_model="OPENCV"))
         self.assertEqual(poses.lines_about(self.folder)[0], "2 of 4 photographs have poses")
-        self.said(poses.print_changes, self.folder)
+        self.said_by(poses.print_changes, self.folder)
         (self.folder / "refined").mkdir()
         (self.folder / "refined" / "report.json").write_text(json.dumps({"registered": {
             "photographs": ["c.jpg"], "left_out": [{"name": "d.jpg", "reason": "5 matches with points"}]}}))
         lines = ["3 of 4 photographs have poses", "warning: 1 photographs have no pose",
                  "no pose: d.jpg: 5 matches with points"]
         self.assertEqual(poses.lines_about(self.folder), lines)
-        self.assertEqual(self.said(poses.print_changes, self.folder).splitlines(), [f"    {line}" for line in lines])
+        self.assertEqual(self.said_by(poses.print_changes, self.folder).splitlines(), [f"    {line}" for line in lines])
 
     def test_a_lens_that_ran_away_is_refused(self):
         self.model(self.folder / "colmap" / "0", self.NAMES[:2])

@@ -83,6 +83,14 @@ class Values(InFolder):
         self.assertEqual(re.findall(r"\w+", re.sub(r"\(.*?\)", "", listed)), list(first_checks.REFINED))
 
 
+class Commands(unittest.TestCase):
+    def test_options_for_matches_go_to_the_command_of_the_matcher(self):
+        for matcher, command in (("exhaustive", "exhaustive_matcher"), ("cascade", "matches_importer"),
+                                 ("vocabulary", "vocab_tree_matcher"), ("spatial", "spatial_matcher")):
+            self.assertEqual(first_checks.command_of("matches", argparse.Namespace(matcher=matcher)),
+                             ["colmap", command])
+
+
 class Estimates(InFolder):
     def needs(self, count, size=(6000, 4000), **more):
         given = argparse.Namespace(**{"until": "cloud", "matcher": "exhaustive", **more})
@@ -93,6 +101,10 @@ class Estimates(InFolder):
         self.assertLess(few.seconds["matches"], few.seconds["depth maps"])
         self.assertGreater(many.seconds["matches"], many.seconds["depth maps"])
         self.assertLess(self.needs(1000, matcher="sequential").seconds["matches"], 0.1 * many.seconds["matches"])
+        self.assertLess(self.needs(60, matcher="cascade").seconds["matches"],
+                        self.needs(60).seconds["matches"] / 3)
+        self.assertAlmostEqual(self.needs(1000, matcher="cascade").seconds["matches"],
+                               10 * self.needs(100, matcher="cascade").seconds["matches"])
         self.assertEqual(self.needs(10, until="poses").seconds["depth maps"], 0)
 
     def test_sizes_are_those_of_the_programs(self):

@@ -7,9 +7,10 @@ import subprocess
 
 from .failure import Failure
 
-# How versions of COLMAP call the options of features and of matches.
+# How versions of COLMAP call the options of features, of matches and of their verification.
 EXTRACTION = ("SiftExtraction", "FeatureExtraction")
 MATCHING = ("SiftMatching", "FeatureMatching")
+VERIFICATION = ("SiftMatching", "TwoViewGeometry")
 
 
 def check_installed():
@@ -68,18 +69,29 @@ def smaller(side):
     return [of_extraction("max_image_size"), side]
 
 
+def matching_command(matcher):
+    """The name of the command that matches the pairs of a matcher of matching.py."""
+    return {"vocabulary": "vocab_tree_matcher", "cascade": "matches_importer"}.get(matcher, f"{matcher}_matcher")
+
+
 def matches(database, matcher, threads=None, more=()):
-    """Matches features. `matcher`: "exhaustive" for all pairs of images, "sequential", "spatial" or
-    "vocabulary". `more`: further options of the matcher."""
-    command = "vocab_tree_matcher" if matcher == "vocabulary" else f"{matcher}_matcher"
+    """Matches features. `matcher`: "exhaustive" for all pairs of images, "sequential", "spatial",
+    "vocabulary" or, for a list of pairs, "cascade". `more`: further options of the command."""
+    command = matching_command(matcher)
     return ["colmap", command, "--database_path", database, *more,
             *on_the_cpu(command, MATCHING, threads)]
 
 
-def matches_of_pairs(database, pairs):
-    """Matches the pairs of photographs that the file `pairs` lists."""
-    return ["colmap", "matches_importer", "--database_path", database, "--match_list_path", pairs,
-            "--match_type", "pairs", *on_the_cpu("matches_importer", MATCHING)]
+def listed_pairs(file):
+    """The option for the pairs of photographs that `file` lists, two names on each line."""
+    return ["--match_list_path", file]
+
+
+def least_matches(count):
+    """The option for the least number of verified matches of a pair."""
+    known = help_of("matches_importer")
+    family = next((family for family in VERIFICATION if f"--{family}.min_num_inliers " in known), VERIFICATION[0])
+    return [f"--{family}.min_num_inliers", count]
 
 
 def mapper(database, images, models, refine=None, threads=None, more=()):

@@ -7,6 +7,8 @@ import math
 import sqlite3
 import struct
 
+from .failure import Failure
+
 LENS_MODELS = {"SIMPLE_PINHOLE": 0, "PINHOLE": 1, "SIMPLE_RADIAL": 2, "RADIAL": 3, "OPENCV": 4, "OPENCV_FISHEYE": 5,
                "FULL_OPENCV": 6, "FOV": 7, "SIMPLE_RADIAL_FISHEYE": 8, "RADIAL_FISHEYE": 9, "THIN_PRISM_FISHEYE": 10}
 PAIR = 2147483647  # pair_id = PAIR * smaller image id + larger image id
@@ -107,6 +109,55 @@ def set_lenses(file, lens_of):
                 connection.execute("UPDATE cameras SET model = ?, params = ?, prior_focal_length = 1 WHERE "
                                    "camera_id = ?", (LENS_MODELS[model],
                                                      struct.pack(f"<{len(parameters)}d", *parameters), camera))
+
+
+@contextlib.contextmanager
+def named_if_damaged(file):
+    """Names the database in the Failure of a block that reads it or a copy of it."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        raise Failure(f"{file}: is not a database of COLMAP, or is damaged ({error}); remove it, and the same "
+                      "command makes it again") from None
+
+
+def name_by_ids(file):
+    """Names the photographs by their ids. take_names() gives them their names again."""
+    with opened(file) as connection:
+        connection.execute("UPDATE images SET name = image_id")
+
+
+def take_names(file, source):
+    """Gives the photographs the names that they have in the database `source`, of which `file` is a copy."""
+    with opened(source) as connection:
+        named = connection.execute("SELECT name, image_id FROM images").fetchall()
+    with opened(file) as connection:
+        connection.executemany("UPDATE images SET name = ? WHERE image_id = ?", named)
+
+
+def matches_of_pairs(file):
+    """The verified matches of the pairs that have any, by pair of ids (first < second), as lists of (feature
+    of the first photograph, feature of the second one)."""
+    found = {}
+    with opened(file) as connection:
+        for pair, data in connection.execute("SELECT pair_id, data FROM two_view_geometries WHERE rows > 0 "
+                                             "ORDER BY pair_id"):
+            numbers = array.array("I")
+            numbers.frombytes(data)
+            found[divmod(pair, PAIR)] = list(zip(numbers[0::2], numbers[1::2]))
+    return found
+
+
+def places_of_features(file):
+    """For each photograph with features (id) their coordinates [px], as two lists, and its size (width,
+    height) [px]."""
+    with opened(file) as connection:
+        for image, columns, data, *size in connection.execute(
+                "SELECT image_id, cols, data, width, height FROM keypoints JOIN images USING (image_id) "
+                "JOIN cameras USING (camera_id) WHERE rows > 0"):
+            numbers = array.array("f")
+            numbers.frombytes(data)
+            yield image, numbers[0::columns], numbers[1::columns], size
 
 
 def verified_matches(file):

@@ -18,7 +18,7 @@ DEPTH_SECONDS = 1 / 0.22  # CPU time of a megapixel of a depth map
 DEPTH_BYTES, CLOUD_BYTES = 20, 13  # a pixel of a depth map
 DEPTH_MEMORY = (150 << 20, 450)    # bytes, and a pixel of a depth map
 LEAST_SIDE, MOST_SIDE = 640, 2560  # of a depth map, with the default options [px]
-NEIGHBOURS = {"sequential": 16, "spatial": 30, "vocabulary": 100}  # pairs of a photograph, at most
+NEIGHBOURS = {"sequential": 16, "cascade": 8, "spatial": 30, "vocabulary": 100}  # pairs of a photograph, at most
 AFTER_THE_CLOUD = 1.5     # disk space with mesh, textures and page
 
 

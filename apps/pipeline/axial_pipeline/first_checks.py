@@ -10,7 +10,7 @@ import re
 import subprocess
 import tempfile
 
-from . import cameras, estimates, files, lenses
+from . import cameras, colmap, estimates, files, lenses
 from .failure import Failure
 from .programs import Programs, words_of
 
@@ -68,8 +68,7 @@ COMMANDS = {"features": ["colmap", "feature_extractor"], "poses": ["colmap", "ma
 def command_of(name, given):
     """The program that gets the words of the option --`name`."""
     if name == "matches":
-        matcher = "vocab_tree" if given.matcher == "vocabulary" else given.matcher
-        return ["colmap", f"{matcher}_matcher"] if matcher != "auto" else ["colmap", "exhaustive_matcher"]
+        return ["colmap", colmap.matching_command(given.matcher)]
     return COMMANDS.get(name)
 
 

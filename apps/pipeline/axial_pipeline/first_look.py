@@ -117,7 +117,7 @@ def match(file, pairs):
     keep_coarse(file)
     listed = file.with_name("pairs.txt")
     files.write(listed, "".join(f"{first} {second}\n" for first, second in pairs))
-    logged(colmap.matches_of_pairs(file, listed), file.parent / "logs" / "matches.log", "matches")
+    logged(colmap.matches(file, "cascade", more=colmap.listed_pairs(listed)), file.parent / "logs" / "matches.log", "matches")
     return overlaps_in(file, pairs)
 
 

@@ -26,7 +26,7 @@ MOST_CPUS = 16  # of a job
 # What the job of a step asks for at first: megabytes, megabytes an image, minutes, minutes an image.
 # The plan of DensifyPointCloud replaces these numbers for the step "densify".
 NEEDS = {"frames": (4000, 0, 60, 0.1), "masks": (2000, 0, 30, 0.05),
-         "features": (8000, 0, 30, 0.1), "lens": (2000, 0, 30, 0), "matches": (8000, 0, 60, 1),
+         "features": (8000, 0, 30, 0.1), "lens": (2000, 0, 30, 0), "matches": (8000, 2, 60, 1),
          "poses": (4000, 4, 60, 1),
          "refine": (2000, 4, 60, 0.2), "import": (2000, 2, 30, 0.02), "plan": (2000, 2, 30, 0.02),
          "densify": (4000, 0, 60, 0.2), "mesh": (8000, 4, 60, 0.5),

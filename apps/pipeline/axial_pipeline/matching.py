@@ -7,12 +7,14 @@ import itertools
 import pathlib
 import sqlite3
 
-from . import colmap, files, gps, positions
+from . import cascade, colmap, files, gps, positions
+from .database import named_if_damaged
 from .failure import Failure
 from .programs import words_of
 from .steps import Step
 
-MATCHERS = ("exhaustive", "sequential", "spatial", "vocabulary")
+MATCHERS = ("auto", "exhaustive", "cascade", "sequential", "spatial", "vocabulary")
+FROM_CASCADE = 30  # photographs, from which "auto" is "cascade" instead of "exhaustive"
 # Photographs with which "spatial" matches each photograph. If photographs overlap by 80 % along a
 # track and by 60 % across, the 30 nearest include those on the tracks to the left and to the right.
 NEIGHBOURS = 30
@@ -20,6 +22,13 @@ NEIGHBOURS = 30
 # photographs without neighbours where a survey is sparse: this limit [m] is beyond every survey.
 FARTHEST = 1000000
 LEAST_POSITIONS = 2  # fewer give no pair
+
+
+def chosen(matcher, count):
+    """The matcher that `matcher` means for `count` photographs."""
+    if matcher != "auto":
+        return matcher
+    return "cascade" if count >= FROM_CASCADE else "exhaustive"
 
 
 def check(given):
@@ -78,6 +87,8 @@ def more_options(given):
 def step(given, features, database, prepare=lambda: None, reads=(), settings=()):
     """The step that copies the database `features` to `database` and adds matches. `prepare`: called before
     photographs are matched. `reads`: what it reads. `settings`: words that say what `prepare` does."""
+    if given.matcher == "cascade":
+        return cascade.step(given, features, database, prepare, reads, settings)
     file = positions.file_of(given.scale_from) if given.matcher == "spatial" else None
     reads = [path for path in (file, given.vocabulary, *reads) if path]
 
@@ -85,15 +96,13 @@ def step(given, features, database, prepare=lambda: None, reads=(), settings=())
         files.copy_once(features, database)
         prepare()
         if given.matcher == "spatial":
-            try:
+            with named_if_damaged(features):
                 prepare_positions(database, file)
-            except sqlite3.Error as error:
-                raise Failure(f"{features}: is not a database of COLMAP, or is damaged ({error}); remove "
-                              "it, and the same command makes it again") from None
 
     return Step("matches", colmap.matches(database, given.matcher,
                                          more=[*more_options(given), *words_of("matches", given)]),
-                makes=database, reads=reads, changed=colmap.database_files(database), before=before,
+                makes=database, reads=reads,
+                changed=[*colmap.database_files(database), *cascade.files_beside(database)], before=before,
                 settings=settings)
 
 

@@ -47,9 +47,10 @@ def options(script_folder, description):
     masks.add_options(parser)
     parser.add_argument("--refine", default="",
                         help="values of lens and port to estimate, as for RefinePoses (default: auto)")
-    parser.add_argument("--matcher", choices=matching.MATCHERS, default="exhaustive",
-                        help="pairs of images that COLMAP matches: all, neighbours in time, neighbours "
-                        "in space, or images that look alike (default: %(default)s)")
+    parser.add_argument("--matcher", choices=matching.MATCHERS, default="auto",
+                        help="pairs of images that COLMAP matches: all, those that overlap, neighbours in time, "
+                        "neighbours in space, or images that look alike; auto: all pairs of fewer than "
+                        f"{matching.FROM_CASCADE} images, otherwise cascade (default: %(default)s)")
     parser.add_argument("--vocabulary", default="",
                         help="vocabulary tree for COLMAP, for --matcher vocabulary")
     parser.add_argument("--lens-model", default="", choices=("", *database.LENS_MODELS), metavar="MODEL",
@@ -296,6 +297,7 @@ def check_photographs(given, lens_lines):
         print(f"{given.images}: {line}", flush=True)
     given.lines += video.lines_about(pathlib.Path(given.output)) if given.videos else []
     given.doubled = doubled(given, images)
+    given.matcher = matching.chosen(given.matcher, len(used(given, images)))
     matching.check(given)
     if pathlib.Path(given.output).is_relative_to(given.images):
         raise Failure(f"--output {given.output}: lies in the folder of the images")
