@@ -20,7 +20,7 @@ import unittest.mock
 
 from pipeline_folder import InFolder
 from programs import main, run
-from stand_ins import PHOTOGRAPH, StandIns
+from stand_ins import StandIns, photograph
 
 from axial_pipeline import cascade, colmap, database, matching, overview, ownership, similar, steps
 from axial_pipeline.failure import Failure
@@ -226,7 +226,7 @@ class Steps(WithStandIn):
     def test_removed_photographs_are_not_matched(self):
         self.track()
         gone = "dive 1/007.jpg"
-        self.matched(self.step(lambda: database.leave_out(self.full, [gone])))
+        self.matched(self.step(lambda: database.leave_out(self.full, {gone: "blurred"})))
         self.assertEqual(len(database.names(self.full)), 35)
         self.assertFalse([pair for file in ("overview.db", "database.db") for pair in self.pairs_of(file) if 7 in pair])
 
@@ -319,10 +319,10 @@ class Choice(StandIns):
 
     def test_thirty_photographs_are_matched_in_a_cascade(self):
         for number in range(3, 29):
-            (self.folder / "images" / f"{number}.png").write_bytes(PHOTOGRAPH)
+            (self.folder / "images" / f"{number}.png").write_bytes(photograph(number))
         self.assertEqual(self.ended("--until", "poses").returncode, 0)
         self.assertIn("colmap exhaustive_matcher ", (self.folder / "commands").read_text())
-        (self.folder / "images" / "29.png").write_bytes(PHOTOGRAPH)
+        (self.folder / "images" / "29.png").write_bytes(photograph(29))
         ended = self.ended("--until", "poses")
         self.assertIn(f"colmap matches_importer --database_path {self.folder}/out/overview.db", ended.stdout)
         self.assertIn("out/features.db: is not a database of COLMAP", ended.stderr)  # of the stand-in

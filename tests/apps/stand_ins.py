@@ -12,7 +12,14 @@ import unittest
 from programs import grey_png
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
-PHOTOGRAPHS = [grey_png([bytes([number] * 4)] * 3) for number in range(3)]
+
+
+def photograph(number):
+    """The bytes of a photograph; each number gives another one."""
+    return grey_png([bytes([number] * 4)] * 3)
+
+
+PHOTOGRAPHS = [photograph(number) for number in range(3)]
 # A stand-in for every program of the pipeline; its file name tells which one. It runs in the folder
 # above `out`. In a step, it appends its command line to the file `commands` and writes the files that
 # the next program reads. If there is a pipe `pipe-NAME`, the program opens it and sleeps, so that the

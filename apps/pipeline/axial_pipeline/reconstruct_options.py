@@ -280,7 +280,8 @@ def check_options(given):
     colmap.check_installed()
     first_checks.check_refine(given)
     lens_lines = first_checks.check_lens_and_housing(given)
-    first_checks.check_options_of_programs(given, MORE_OPTIONS)
+    first_checks.check_options_of_programs(given, {name: program for name, program in MORE_OPTIONS.items()
+                                                   if name != "matches"})
     return lens_lines
 
 
@@ -298,6 +299,7 @@ def check_photographs(given, lens_lines):
     given.lines += video.lines_about(pathlib.Path(given.output)) if given.videos else []
     given.doubled = doubled(given, images)
     given.matcher = matching.chosen(given.matcher, len(used(given, images)))
+    first_checks.check_options_of_programs(given, {"matches": MORE_OPTIONS["matches"]})
     matching.check(given)
     if pathlib.Path(given.output).is_relative_to(given.images):
         raise Failure(f"--output {given.output}: lies in the folder of the images")
