@@ -277,7 +277,8 @@ class Overview(WithStandIn):
     def test_scales_are_those_of_all_forms_of_keypoints(self):
         affine = array.array("f", [0, 0, 1, 0, 0, 1, 0, 0, 3, 0, 0, -3, 0, 0, 0, 2, 2, 0]).tobytes()
         self.assertEqual(overview.largest(6, affine, 2), [1, 2])
-        self.assertEqual(overview.largest(4, array.array("f", [0, 0, 1, 9, 0, 0, 2, 0, 0, 0, 2, 0]).tobytes(), 2), [1, 2])
+        plain = array.array("f", [0, 0, 1, 9, 0, 0, 2, 0, 0, 0, 2, 0]).tobytes()
+        self.assertEqual(overview.largest(4, plain, 2), [1, 2])
         self.assertEqual(overview.largest(2, array.array("f", [0, 0, 1, 1]).tobytes(), 1), [0])
 
     def test_candidates_are_alike_near_or_follow_each_other(self):
