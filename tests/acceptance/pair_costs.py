@@ -28,8 +28,8 @@ def options(brought, matcher):
     lens = str(brought.lens)
     return argparse.Namespace(
         images=str(brought.images), lens=lens, lenses=[lens], housing=str(brought.housing), matcher=matcher,
-        cameras=[], programs=str(BIN), keep_all=False, scale_from="", masks="", vocabulary="", lens_model="",
-        features="", matches="", poses="")
+        cameras=[], doubled={}, programs=str(BIN), keep_all=False, scale_from="", masks="", vocabulary="",
+        lens_model="", features="", matches="", poses="")
 
 
 def matched(brought, matcher, out):
