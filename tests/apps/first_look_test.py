@@ -23,7 +23,7 @@ COLMAP = """case "$*" in *--help*) echo "--SiftExtraction.use_gpu --SiftExtracti
 echo "$*" >> {folder}/commands
 case "$*" in
   *peak_threshold*) cp {folder}/weak.db "$3" ;;
-  matches_importer*) cp "$3" {folder}/matched.db ;;
+  matches_importer*) cp "$3" {folder}/matched.db; cp "$5" {folder}/pairs.txt ;;
   feature_extractor*) [ -f "$3" ] || cp {folder}/plain.db "$3" ;;
 esac
 """
@@ -93,6 +93,14 @@ class Looks(Databases):
         self.assertIn("--SiftExtraction.max_image_size 640", self.commands()[0])
         self.assertEqual(len(self.commands()), 2)
         self.assertEqual({one.count for one in database.features(self.folder / "matched.db").values()}, {800})
+
+    def test_names_may_have_blanks(self):
+        """COLMAP splits the lines of its list of pairs at blanks."""
+        photographs = dict.fromkeys(("dive 1/0.jpg", "dive 1/1.jpg"), (1000, SHARP))
+        self.add_matches(self.database(photographs, "plain.db"), (1, 2), range(800))
+        self.assertIn("about 100% between", self.rows(photographs)["overlap"][0])
+        self.assertEqual((self.folder / "pairs.txt").read_text(), "1 2\n")
+        self.assertEqual(database.names(self.folder / "matched.db"), {1: "1", 2: "2"})
 
     def test_photographs_that_do_no_good_have_no_part_in_the_overlap(self):
         photographs = {"0.jpg": (2000, SHARP), "1.jpg": (1500, BLURRED), "2.jpg": (2000, SHARP), "3.jpg": (2000, SHARP),

@@ -23,11 +23,6 @@ def files_beside(full):
             full.with_name(PAIRS)]
 
 
-def write_pairs(file, pairs):
-    """COLMAP splits a line at its first blank, so that ids stand for names, which may have blanks."""
-    files.write(file, "".join(f"{one} {other}\n" for one, other in pairs))
-
-
 def without_least_matches(words):
     """The words of --matches without the least number of verified matches, for the few features."""
     kept, is_value = [], False
@@ -62,12 +57,12 @@ class Cascade:
             overview.write(self.small, self.full)
             self.alike = overview.most_similar(self.small)
             known = overview.known_positions(self.full, self.of_positions)
-            write_pairs(self.candidates, overview.candidates(database.names(self.full), self.alike, known))
+            colmap.write_pairs(self.candidates, overview.candidates(database.names(self.full), self.alike, known))
 
     def match(self, pairs, number):
         """Matches pairs with all features. COLMAP skips those that it has matched before. `number`: of the
         round."""
-        write_pairs(self.pairs, pairs)
+        colmap.write_pairs(self.pairs, pairs)
         command = [str(word) for word in colmap.matches(
             self.full, "cascade", more=[*colmap.listed_pairs(self.pairs), *self.words])]
         print(f"    {len(pairs)} {'more ' if number > 1 else ''}pairs with all features\n    {shlex.join(command)}",

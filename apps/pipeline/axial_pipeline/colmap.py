@@ -5,6 +5,7 @@ import shutil
 import struct
 import subprocess
 
+from . import files
 from .failure import Failure
 
 # How versions of COLMAP call the options of features, of matches and of their verification.
@@ -80,6 +81,12 @@ def matches(database, matcher, threads=None, more=()):
     command = matching_command(matcher)
     return ["colmap", command, "--database_path", database, *more,
             *on_the_cpu(command, MATCHING, threads)]
+
+
+def write_pairs(file, pairs):
+    """Writes pairs of ids for listed_pairs(). COLMAP splits a line at its first blank, so that photographs, whose
+    names may have blanks, must be named by their ids (database.name_by_ids)."""
+    files.write(file, "".join(f"{one} {other}\n" for one, other in pairs))
 
 
 def listed_pairs(file):

@@ -122,17 +122,23 @@ def named_if_damaged(file):
 
 
 def name_by_ids(file):
-    """Names the photographs by their ids. take_names() gives them their names again."""
+    """Names the photographs by their ids. give_names() gives them their names again."""
     with opened(file) as connection:
         connection.execute("UPDATE images SET name = image_id")
+
+
+def give_names(file, named):
+    """Names the photographs. `named`: names by id."""
+    with opened(file) as connection:
+        connection.executemany("UPDATE images SET name = ? WHERE image_id = ?",
+                               [(name, image) for image, name in named.items()])
 
 
 def take_names(file, source):
     """Gives the photographs the names that they have in the database `source`, of which `file` is a copy."""
     with opened(source) as connection:
-        named = connection.execute("SELECT name, image_id FROM images").fetchall()
-    with opened(file) as connection:
-        connection.executemany("UPDATE images SET name = ? WHERE image_id = ?", named)
+        named = dict(connection.execute("SELECT image_id, name FROM images"))
+    give_names(file, named)
 
 
 def matches_of_pairs(file):

@@ -115,9 +115,13 @@ def overlaps_in(file, pairs):
 def match(file, pairs):
     """Matches the pairs of photographs in the database `file`. Returns overlaps_in()."""
     keep_coarse(file)
-    listed = file.with_name("pairs.txt")
-    files.write(listed, "".join(f"{first} {second}\n" for first, second in pairs))
-    logged(colmap.matches(file, "cascade", more=colmap.listed_pairs(listed)), file.parent / "logs" / "matches.log", "matches")
+    listed, named = file.with_name("pairs.txt"), database.names(file)
+    ids = {name: image for image, name in named.items()}
+    colmap.write_pairs(listed, [(ids[first], ids[second]) for first, second in pairs])
+    database.name_by_ids(file)
+    logged(colmap.matches(file, "cascade", more=colmap.listed_pairs(listed)), file.parent / "logs" / "matches.log",
+           "matches")
+    database.give_names(file, named)
     return overlaps_in(file, pairs)
 
 
