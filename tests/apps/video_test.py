@@ -19,7 +19,7 @@ case "$*" in *--help) exit ;; esac
 echo "ExtractFrames $*" >> commands
 echo "11:02:03 [ExtractFrames] warning: dive.avi: moves by 3 pixels"
 mkdir -p out/frames/dive
-for number in 1 2 3; do cp images/0.png out/frames/dive/frame_00000$number.png; done
+for number in 0 1 2; do cp images/$number.png out/frames/dive/frame_00000$((number + 1)).png; done
 echo '{"clips": [{"clip": "dive.avi", "frame_count": 90, "frames": [{}, {}, {}]}]}' > out/frames.json
 """
 COMMAND = "ExtractFrames -i {0}/dive.avi -o {0}/out/frames --json {0}/out/frames.json"
