@@ -33,9 +33,9 @@ bool same_features(const std::vector<ColmapPoint2D>& a, const std::vector<Colmap
 
 using ImagesByName = std::map<std::string, const io::DatabaseImage*>;
 
-void require_same_photographs(const fs::path& file, const ImagesByName& images,
-                              const ColmapModel& model) {
-  for (const io::ColmapImage& image : model.images) {
+// Takes the sizes of the features from the database. Error if the photographs are others.
+void take_sizes(const fs::path& file, const ImagesByName& images, ColmapModel& model) {
+  for (io::ColmapImage& image : model.images) {
     const auto found = images.find(image.name);
     if (found == images.end())
       fail("{}: has no photograph '{}' of the model: is it the database of this model?",
@@ -43,6 +43,8 @@ void require_same_photographs(const fs::path& file, const ImagesByName& images,
     if (!same_features(image.points, found->second->features))
       fail("{}: the features of '{}' are not those of the model: is it the database of this model?",
            file.string(), image.name);
+    for (std::size_t i = 0; i < image.points.size(); ++i)
+      image.points[i].size = found->second->features[i].size;
   }
 }
 
@@ -240,7 +242,7 @@ LeftOutPhotographs add_left_out(const fs::path& file, std::span<const io::Colmap
   const io::ColmapDatabase database = io::read_colmap_database(file);
   ImagesByName images;
   for (const io::DatabaseImage& image : database.images) images[image.name] = &image;
-  require_same_photographs(file, images, model);
+  take_sizes(file, images, model);
   LeftOutPhotographs left_out;
   left_out.first = model.images.size();
   for (const io::ColmapImage& image : model.images) images.erase(image.name);

@@ -33,7 +33,8 @@ struct LeftOutPhotographs {
   }
 };
 
-// Adds the photographs of the database that `model` does not have, with their features and cameras.
+// Adds the photographs of the database that `model` does not have, with their features and cameras,
+// and gives the features of all photographs their sizes.
 // Their poses have no meaning. `lenses`: as for pose::to_bundle(). Error that names the file for a
 // database that cannot be read, that lacks a photograph of the model, or that has other features of
 // it.

@@ -72,7 +72,8 @@ void declare_files(OptionList& visible, Texts& texts, Options& options) {
            "folder for sparse/ (COLMAP text, lens in air), housing.json and report.json")
       .add("database", &texts.database,
            "COLMAP's database of these photographs: photographs to which COLMAP gave no pose get "
-           "one if their matches determine it, and tracks are completed")
+           "one if their matches determine it, and observations are weighed by the sizes of their "
+           "features")
       .add("effective-lens", &texts.effective_lens,
            "instead of refining poses, write this cameras.txt: the single lens that images nearly "
            "as "

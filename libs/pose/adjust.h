@@ -72,8 +72,9 @@ struct AdjustOptions : Unknowns {
   bool points_known = false;  // true: all points stay constant
   bool poses_known = false;   // true: all poses stay constant
 
-  double pixel_sigma = 1;    // standard deviation of the x and of the y of an observation [px]
-  double loss_sigmas = 2;    // Huber loss: errors above this times pixel_sigma count linearly
+  // The standard deviation of the x and of the y of an observation with Observation::sigma 1 [px].
+  double pixel_sigma = 1;
+  double loss_sigmas = 2;  // Huber loss: errors above this many standard deviations count linearly
   int max_iterations = 100;  // of the solver
 
   // If at least `many_images` poses are adjusted, adjust() starts with steps that are hardly
@@ -105,9 +106,9 @@ struct AdjustReport {
 // Refractive bundle adjustment: changes the poses, the points and the free numbers of the cameras
 // (BundleCamera::change) to minimize the cost, from their present values. The cost is the sum of
 // the squared reprojection errors of the exact projection (with Huber loss, in units of
-// `pixel_sigma`) and of the squared deviations from known distances, positions and measured numbers
-// (in their standard deviations). Positions have a Huber loss, too: deviations of more than three
-// standard deviations count linearly.
+// `pixel_sigma` times Observation::sigma) and of the squared deviations from known distances,
+// positions and measured numbers (in their standard deviations). Positions have a Huber loss, too:
+// deviations of more than three standard deviations count linearly.
 //
 // Without knowledge of positions, points or poses, the cost does not depend on where the model is
 // in the world. The pose of one image therefore stays constant: of the first image with an
@@ -131,7 +132,8 @@ struct AdjustReport {
 AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSink& sink = {});
 
 // Estimates the standard deviation of the observations [px] from their reprojection errors. Let N
-// be the number of observations, S the sum of their squared errors, and U the number of unknowns: 6
+// be the number of observations, S the sum of their squared errors, each divided by
+// Observation::sigma, and U the number of unknowns: 6
 // for each pose of an image with observations, except constant poses; 3 for each point, unless
 // points are known; and 1 for each free number of each camera. The result is sqrt(S / max(1, 2 N -
 // U)), and at least 1e-9 px. Infinite errors count with the mean square of the finite errors.

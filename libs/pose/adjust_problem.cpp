@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "base/error.h"
@@ -116,15 +117,21 @@ void AdjustProblem::fill_numbers() {
 }
 
 void AdjustProblem::add_observations() {
-  const double sigma = options_.pixel_sigma;
-  auto* loss = new ceres::ScaledLoss(new ceres::HuberLoss(options_.loss_sigmas * sigma),
-                                     1 / (sigma * sigma), ceres::TAKE_OWNERSHIP);
+  std::map<double, ceres::LossFunction*> losses;  // few: observations are weighed in classes
+  const auto loss_of = [&](double relative) {
+    ceres::LossFunction*& loss = losses[relative];
+    const double sigma = relative * options_.pixel_sigma;
+    if (!loss)
+      loss = new ceres::ScaledLoss(new ceres::HuberLoss(options_.loss_sigmas * sigma),
+                                   1 / (sigma * sigma), ceres::TAKE_OWNERSHIP);
+    return loss;
+  };
   for (const Observation& observation : bundle_.observations) {
     const BundleImage& image = bundle_.images[observation.image];
     problem_->AddResidualBlock(
         new ObservationCost(observation, image.pose, bundle_.cameras[image.camera],
                             (*cameras_)[image.camera]),
-        loss, image_block(observation.image), point_block(observation.point),
+        loss_of(observation.sigma), image_block(observation.image), point_block(observation.point),
         change_block(image.camera));
   }
 }

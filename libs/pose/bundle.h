@@ -51,6 +51,9 @@ struct Observation {
   std::size_t point = 0;                            // index into Bundle::points
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // [px] of the photograph
   std::size_t source = 0;  // index in ColmapImage::points of the COLMAP model
+  float size = 0;          // scale of the feature [px]; 0: not known
+  // The standard deviation of the pixel as a multiple of AdjustOptions::pixel_sigma, above 0.
+  double sigma = 1;
 };
 
 // The input and the result of adjust() (adjust.h).

@@ -154,6 +154,7 @@ ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapC
       observation.source = element.point2d;
       const io::ColmapPoint2D& seen = model.images[observation.image].points.at(element.point2d);
       observation.pixel = {seen.x - 0.5, seen.y - 0.5};
+      observation.size = seen.size;
       const BundleCamera& camera = bundle.cameras[bundle.images[observation.image].camera];
       if (direction_at(camera.measured.lens, observation.pixel))
         bundle.observations.push_back(observation);

@@ -11,6 +11,7 @@
 #include "base/order_statistics.h"
 #include "pose/kept_numbers.h"
 #include "pose/known.h"
+#include "pose/observation_weights.h"
 #include "scene/decompositions.h"
 
 namespace axial::pose {
@@ -207,6 +208,7 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink
                            root_mean_square(reprojection_errors(bundle)), dropped));
     limits = options.tracks;
     adjusting.loss_sigmas = options.adjust.loss_sigmas;
+    weigh_by_size(bundle);
     adjusting.pixel_sigma = observed_pixel_sigma(bundle, adjusting);
   }
   adjusting.least_gain = options.adjust.least_gain;

@@ -66,12 +66,13 @@ void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 // Adjusts (adjust()) and filters (filter()) a bundle in metres for `options.rounds` rounds, then
 // once more. The first round uses `options.adjust.pixel_sigma`, and four times the limits
 // `options.adjust.loss_sigmas` and `options.tracks.max_error`. Later rounds use the limits
-// themselves, and observed_pixel_sigma() of the round before. The first round also drops repeated
-// observations (drop_repeated()). `progress` gets one line of text for each round, and
-// `iterations` one line for each iteration of the solver. With AdjustOptions::many_images or more
-// poses, `progress` also gets a line at the start of each adjustment, and the rounds before the
-// last adjustment end at an AdjustOptions::least_gain of 0.1 or of `options.adjust` if that is
-// larger: this is enough to find observations that do not fit.
+// themselves, and observed_pixel_sigma() of the round before. After
+// each round, observations are weighed by the sizes of their features (weigh_by_size()). The first
+// round also drops repeated observations (drop_repeated()). `progress` gets one line of text for
+// each round, and `iterations` one line for each iteration of the solver. With
+// AdjustOptions::many_images or more poses, `progress` also gets a line at the start of each
+// adjustment, and the rounds before the last adjustment end at an AdjustOptions::least_gain of 0.1
+// or of `options.adjust` if that is larger: this is enough to find observations that do not fit.
 //
 // Known positions are judged (judge_positions() in position_sigma.h) at the start and after each
 // round: positions that do not fit are left out, and the standard deviation of positions with

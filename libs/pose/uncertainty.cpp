@@ -318,7 +318,8 @@ AdjustOptions weighed_by_residuals(const Bundle& bundle, const AdjustOptions& op
 }  // namespace
 
 double observed_pixel_sigma(const Bundle& bundle, const AdjustOptions& options) {
-  const std::vector<double> errors = reprojection_errors(bundle);
+  std::vector<double> errors = reprojection_errors(bundle);
+  for (std::size_t i = 0; i < errors.size(); ++i) errors[i] /= bundle.observations[i].sigma;
   const double residuals = 2.0 * static_cast<double>(errors.size());
   const double free = std::max(1.0, residuals - static_cast<double>(unknowns_of(bundle, options)));
   constexpr double kLeast = 1e-9;  // [px], size of rounding errors

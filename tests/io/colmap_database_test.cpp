@@ -93,6 +93,22 @@ TEST_F(ColmapDatabaseTest, FeaturesMayHaveTwoNumbers) {
   EXPECT_EQ(read.images[2].features[0].y, 8);
 }
 
+// COLMAP's features have a scale and an orientation, or an affine shape.
+TEST_F(ColmapDatabaseTest, FeaturesHaveSizes) {
+  const auto size_of = [&](int columns, const std::vector<float>& row) {
+    DatabaseFile(file_()).run(
+        fmt::format("UPDATE keypoints SET rows = 1, cols = {}, data = ? WHERE image_id = 9",
+                    columns),
+        row);
+    return read_colmap_database(file_()).images[2].features[0].size;
+  };
+  EXPECT_EQ(size_of(4, {7, 8, 2.5f, 1}), 2.5f);
+  EXPECT_EQ(size_of(6, {7, 8, 0, -2, 8, 0}), 4);  // turned, and stretched by two
+  EXPECT_EQ(size_of(2, {7, 8}), 0);
+  EXPECT_EQ(size_of(4, {7, 8, -1, 1}), 0);
+  EXPECT_EQ(size_of(6, {7, 8, NAN, 0, 0, 1}), 0);
+}
+
 TEST_F(ColmapDatabaseTest, PairsWithoutAGeometryAreLeftOut) {
   for (const int config : {0, 1, 7}) {
     DatabaseFile(file_()).run(fmt::format("UPDATE two_view_geometries SET config = {}", config));

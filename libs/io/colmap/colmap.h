@@ -39,6 +39,7 @@ struct ColmapCamera {
 struct ColmapPoint2D {
   double x = 0, y = 0;                 // [px], pixel centres at 0.5
   std::uint64_t point3d = kNoPoint3D;  // id of a 3D point of the model
+  float size = 0;                      // scale of the feature [px]; 0: not known, as in all models
 };
 
 // An image that COLMAP has registered.

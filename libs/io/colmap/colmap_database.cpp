@@ -179,6 +179,15 @@ std::vector<ColmapCamera> read_cameras(const Database& database) {
   return cameras;
 }
 
+// The scale of a feature [px] from its further numbers: scale and orientation, or an affine shape.
+// 0: not known.
+float size_of(std::span<const float> more) {
+  const float size = more.size() == 2   ? more[0]
+                     : more.size() == 4 ? std::sqrt(std::abs(more[0] * more[3] - more[1] * more[2]))
+                                        : 0;
+  return std::isfinite(size) && size > 0 ? size : 0;
+}
+
 // COLMAP stores features as rows of x, y and further numbers.
 std::vector<ColmapPoint2D> features_in(const Rows& rows, int column) {
   const std::vector<float> numbers = rows.matrix<float>(column);
@@ -189,7 +198,8 @@ std::vector<ColmapPoint2D> features_in(const Rows& rows, int column) {
     if (!std::isfinite(numbers[i]) || !std::isfinite(numbers[i + 1]))
       fail("{}: feature {} is at {} {}", rows.where(column), i / columns, numbers[i],
            numbers[i + 1]);
-    features.push_back({numbers[i], numbers[i + 1]});
+    features.push_back({numbers[i], numbers[i + 1], kNoPoint3D,
+                        size_of(std::span(numbers).subspan(i + 2, columns - 2))});
   }
   return features;
 }

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/observation_weights.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "pose/refine.h"
+#include "pose/survey.h"
+
+namespace axial::pose {
+namespace {
+
+using testing::camera_behind;
+using testing::flat_port;
+using testing::survey;
+
+// Of every four features, one is coarse, and its place is known 3.5 times worse.
+constexpr float kFine = 1, kCoarse = 6;
+constexpr double kFineNoise = 0.1, kCoarseNoise = 0.35;
+
+Bundle mixed_features(unsigned seed) {
+  Bundle bundle = survey(camera_behind(flat_port(2)), {.points = 400, .seed = seed});
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0, 1);
+  for (Observation& observation : bundle.observations) {
+    const bool coarse = random() % 4 == 0;
+    const double spread = coarse ? kCoarseNoise : kFineNoise;
+    observation.size = coarse ? kCoarse : kFine;
+    observation.pixel += spread * Eigen::Vector2d(normal(random), normal(random));
+  }
+  return bundle;
+}
+
+TEST(ObservationWeights, FollowTheErrorsOfEachSize) {
+  Bundle bundle = mixed_features(1);
+  weigh_by_size(bundle);
+  double fine = 0, coarse = 0;
+  for (const Observation& observation : bundle.observations)
+    (observation.size == kFine ? fine : coarse) = observation.sigma;
+  EXPECT_NEAR(coarse / fine, kCoarseNoise / kFineNoise, 0.2);
+  EXPECT_LT(fine, 1);
+}
+
+TEST(ObservationWeights, AreEqualWithoutSizes) {
+  Bundle bundle = mixed_features(1);
+  const auto all_equal = [&] {
+    weigh_by_size(bundle);
+    return std::ranges::all_of(bundle.observations,
+                               [](const Observation& one) { return one.sigma == 1; });
+  };
+  EXPECT_FALSE(all_equal());
+  for (Observation& observation : bundle.observations) observation.size = 0;
+  EXPECT_TRUE(all_equal());
+  for (Observation& observation : bundle.observations) observation.size = 3;
+  EXPECT_TRUE(all_equal());
+}
+
+TEST(ObservationWeights, OfFewObservationsAreEqual) {
+  Bundle bundle = mixed_features(1);
+  bundle.observations.resize(399);
+  weigh_by_size(bundle);
+  for (const Observation& observation : bundle.observations) ASSERT_EQ(observation.sigma, 1);
+}
+
+// Over ten draws: the poses are better, and errors are as large as stated.
+TEST(ObservationWeights, MakePosesBetter) {
+  double with = 0, without = 0, share = 0;
+  constexpr int kDraws = 10;
+  for (unsigned seed = 1; seed <= kDraws; ++seed) {
+    const Bundle truth = survey(camera_behind(flat_port(2)), {.points = 400, .seed = seed});
+    const double length = (truth.images[0].pose.centre - truth.images.back().pose.centre).norm();
+    RefineOptions options;
+    options.adjust.distances.push_back(
+        {KnownDistance::Between::images, 0, truth.images.size() - 1, length, 1e-4 * length});
+    Bundle weighed = mixed_features(seed), plain = weighed;
+    for (Observation& observation : plain.observations) observation.size = 0;
+    refine(weighed, options);
+    refine(plain, options);
+    with += testing::pose_errors(weighed, truth).centre_rms;
+    without += testing::pose_errors(plain, truth).centre_rms;
+    share += observed_pixel_sigma(weighed, options.adjust) / (kDraws * kFineNoise);
+  }
+  EXPECT_LT(with, 0.7 * without);
+  // The unit is the standard deviation of the median observation, a fine one.
+  EXPECT_GT(share, 0.8);
+  EXPECT_LT(share, 2);
+}
+
+}  // namespace
+}  // namespace axial::pose
