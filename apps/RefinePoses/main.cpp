@@ -386,6 +386,32 @@ bool warn_of_other_kind(const Options& options, const pose::Bundle& before) {
   return true;
 }
 
+bool are_possible(const io::Housing& housing) {
+  try {
+    for (const auto& [name, port] : housing.ports) io::check_port(port, name);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+// The kind of port with which to start again, after a warning: the photographs fit this kind better
+// than the stated kind, whose numbers moved so far that the refined port is impossible.
+std::optional<pose::PortKind> other_kind(const Options& options, const Input& input,
+                                         const pose::ColmapBundle& refined, const Refined& done) {
+  const pose::AdjustOptions& adjust = options.refine.adjust;
+  if (!options.usual_housing.empty() || adjust.poses_known) return {};
+  if (are_possible(to_housing(refined, input.housing))) return {};
+  const std::vector<pose::KindFit> fits = pose::fits_of_kinds(done.before, adjust);
+  const std::optional<pose::KindFit> better = pose::better_kind(fits);
+  if (!better || better->kind == pose::PortKind::none) return {};
+  log_warning(
+      "{}; the poses are refined again, with the usual numbers of {}: state the right kind "
+      "of housing",
+      text_of(*better, fits.front()), pose::words_for(better->kind));
+  return better->kind;
+}
+
 // Tells the errors, checks the result, and writes it. `frame`: of the refined bundle.
 void finish(const Options& options, const Input& input, const pose::ColmapBundle& refined,
             const Refined& done, const UnusedInput& unused, const LocalFrame& frame,
@@ -474,14 +500,21 @@ int run(int argc, char** argv) {
   check_ports(options, input, refined.bundle);
   UnusedInput unused(options.allow_missing);
   LocalFrame frame = set_known(options, refined.bundle, input.frame, unused);
-  if (options.usual_housing == "unknown" &&
-      likely_kind(refined.bundle, options.refine.adjust) == pose::PortKind::dome) {
-    input.housing = usual_housing(pose::PortKind::dome);
+  const auto start_with = [&](pose::PortKind kind) {
+    input.housing = usual_housing(kind);
     refined = load(options, input.model, input.lenses, input.housing);
     frame = set_known(options, refined.bundle, input.frame, unused);
-  }
+  };
+  if (options.usual_housing == "unknown" &&
+      likely_kind(refined.bundle, options.refine.adjust) == pose::PortKind::dome)
+    start_with(pose::PortKind::dome);
   say_input(input, refined);
-  const Refined done = refine_or_without_scale(options, refined, input, unused, frame);
+  Refined done = refine_or_without_scale(options, refined, input, unused, frame);
+  if (const auto kind = other_kind(options, input, refined, done)) {
+    start_with(*kind);
+    options.usual_housing = "unknown";
+    done = refine_or_without_scale(options, refined, input, unused, frame);
+  }
   options.refine.adjust.positions = done.report.positions;
   finish(options, input, refined, done, unused, frame, registered);
   return 0;

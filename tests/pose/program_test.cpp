@@ -203,6 +203,28 @@ TEST_F(RefinePoses, EstimatesWhatWasMeasuredByRuler) {
   EXPECT_NEAR(lenses[0].focal_sigma.value(), free[4]["sigma"].get<double>(), 1e-5);
 }
 
+// The centre of the dome moves out of the dome, so that the poses are refined with a flat port.
+TEST_F(RefinePoses, StartsAgainWithTheRightKindOfPort) {
+  io::Housing dome;
+  dome.ports["main"] =
+      refractive::DomePort<double>{Eigen::Vector3d::Zero(), 0.06, 0.008, 1, 1.52, 1.333};
+  dome.default_port = "main";
+  io::write_housing(folder_ / "housing.json", dome);
+  const Outcome outcome = run(kInput + "-o out --scale-from " + baseline());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output,
+              ::testing::ContainsRegex("warning: The photographs fit a flat port better than a "
+                                       "dome: .* refined again, with the usual numbers of a flat"));
+  const io::Housing found = io::read_housing(folder_ / "out" / "housing.json");
+  const auto& port = std::get<refractive::FlatPort<double>>(found.ports.at("main"));
+  EXPECT_NEAR(std::asin(port.normal.x()), 2 * testing::kDegree, 0.3 * testing::kDegree);
+  Bundle poses = truth_;
+  const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
+  for (std::size_t i = 0; i < poses.images.size(); ++i)
+    poses.images[i].pose = refined.images[i].pose;
+  EXPECT_LT(testing::pose_errors(poses, truth_).centre_rms, 0.002);  // of 0.8 m
+}
+
 // The files state smaller standard deviations than a ruler's, and the options have priority.
 TEST_F(RefinePoses, TakesStandardDeviationsFromFilesAndOptions) {
   io::Housing housing = testing::housing();
