@@ -314,7 +314,9 @@ Input read_input(const Options& options) {
   input.frame = io::enter_local_frame(input.model);
   input.lenses = load_lenses(options, input.model);
   warn_of_other_lenses(options, input.model, input.lenses);
-  if (!options.database.empty())
+  if (options.poses == "known" && !options.database.empty())
+    log_info("{} is not read, because the poses are known", options.database.string());
+  else if (!options.database.empty())
     input.left_out = add_left_out(options.database, input.lenses, input.model);
   input.housing = load_housing(options, input.model, input.lenses);
   return input;

@@ -45,9 +45,6 @@ void check(const Options& options) {
   if (options.poses == "known" && !options.scale_from.empty())
     fail("--scale-from {}: contradicts --poses known, which means that the model is in metres",
          options.scale_from);
-  if (options.poses == "known" && !options.database.empty())
-    fail("--database {}: contradicts --poses known: photographs without a pose have no known pose",
-         options.database.string());
   if (options.scale_from.empty() && options.scale_sigma.given)
     fail("--scale-sigma {}: is the standard deviation of --scale-from, which is missing",
          options.scale_sigma.metres);

@@ -107,8 +107,8 @@ class Survey(unittest.TestCase):
         return subprocess.Popen(
             [sys.executable, str(SCRIPT), "--images", str(scene / "water"), "--lens",
              str(scene / "sparse" / "cameras.txt"), "--housing", str(scene / "housing.json"),
-             "-o", out, "--refine-poses=--poses known", f"--densify={DENSIFY}", "--tiles", "2", "--until", "map", "--programs",
-             str(cls.programs), *more], cwd=cls.folder, env=cls.environment, text=True,
+             "-o", out, "--matcher", "exhaustive", "--refine-poses=--poses known", f"--densify={DENSIFY}", "--tiles", "2",
+             "--until", "map", "--programs", str(cls.programs), *more], cwd=cls.folder, env=cls.environment, text=True,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **process)
 
     @classmethod

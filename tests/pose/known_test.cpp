@@ -34,7 +34,8 @@ Bundle random_bundle(std::size_t images, std::size_t points) {
   Bundle bundle;
   bundle.cameras.resize(1);
   for (std::size_t i = 0; i < images; ++i) bundle.images.push_back({std::to_string(i), 0, {}});
-  for (std::size_t i = 0; i < points; ++i) bundle.points.push_back({Eigen::Vector3d::Zero(), 100 + i});
+  for (std::size_t i = 0; i < points; ++i)
+    bundle.points.push_back({Eigen::Vector3d::Zero(), 100 + i});
   for (std::size_t i = 0; i < images; ++i)
     for (std::size_t p = 0; p < points; ++p)
       if (*rc::gen::inRange(0, 4) == 0) {

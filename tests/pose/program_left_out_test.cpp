@@ -145,8 +145,12 @@ TEST_F(LeftOutPhotographs, ComeFromTheDatabaseOfTheModel) {
   expect_refusal("RefinePoses", kInput + "-o out --database other.db",
                  "has no photograph 'image3.jpg' of the model");
   expect_refusal("RefinePoses", kInput + "-o out --database nothing.db", "file not found");
-  expect_refusal("RefinePoses", kInput + "-o out --poses known --database database.db",
-                 "contradicts --poses known");
+}
+
+TEST_F(LeftOutPhotographs, StayOutIfPosesAreKnown) {
+  const Outcome outcome = run(kInput + "-o out --poses known --database nothing.db");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("nothing.db is not read, because the poses are known"));
 }
 
 }  // namespace

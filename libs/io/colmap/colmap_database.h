@@ -17,8 +17,8 @@ struct DatabaseImage {
   std::uint32_t id = 0;
   std::uint32_t camera = 0;  // id of its camera
   std::string name;          // path relative to the image folder
-  // All features with their sizes, in COLMAP's order. The image points of a model of the same photograph
-  // (ColmapImage::points) have the same order. Features belong to no point.
+  // All features with their sizes, in COLMAP's order. The image points of a model of the same
+  // photograph (ColmapImage::points) have the same order. Features belong to no point.
   std::vector<ColmapPoint2D> features;
 };
 
