@@ -148,6 +148,7 @@ TEST_F(LeftOutPhotographs, ComeFromTheDatabaseOfTheModel) {
 }
 
 TEST_F(LeftOutPhotographs, StayOutIfPosesAreKnown) {
+  write("sparse", testing::model_of(truth_));
   const Outcome outcome = run(kInput + "-o out --poses known --database nothing.db");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_THAT(outcome.output, HasSubstr("nothing.db is not read, because the poses are known"));
