@@ -375,17 +375,20 @@ std::string text_of(const pose::KindFit& better, const pose::KindFit& stated) {
       pose::words_for(stated.kind), better.error, stated.error, numbers);
 }
 
-// Warns if the photographs fit another kind of port than the stated kind. Returns whether they do.
-// `before`: the bundle before refining, in metres.
-bool warn_of_other_kind(const Options& options, const pose::Bundle& before) {
+// A kind of port that the photographs fit better than the stated kind.
+struct OtherKind {
+  pose::PortKind kind;
+  std::string evidence;
+};
+
+// `before`: the bundle before refining, in metres. Nothing if no kind was stated.
+std::optional<OtherKind> other_kind(const Options& options, const pose::Bundle& before) {
   const pose::AdjustOptions& adjust = options.refine.adjust;
-  if (!options.usual_housing.empty() || adjust.poses_known) return false;
+  if (!options.usual_housing.empty() || adjust.poses_known) return {};
   const std::vector<pose::KindFit> fits = pose::fits_of_kinds(before, adjust);
   const std::optional<pose::KindFit> better = pose::better_kind(fits);
-  if (!better) return false;
-  log_warning("{}; state the right kind of housing, or let --housing unknown find it",
-              text_of(*better, fits.front()));
-  return true;
+  if (!better) return {};
+  return OtherKind{better->kind, text_of(*better, fits.front())};
 }
 
 bool are_possible(const io::Housing& housing) {
@@ -397,21 +400,20 @@ bool are_possible(const io::Housing& housing) {
   }
 }
 
-// The kind of port with which to start again, after a warning: the photographs fit this kind better
-// than the stated kind, whose numbers moved so far that the refined port is impossible.
-std::optional<pose::PortKind> other_kind(const Options& options, const Input& input,
-                                         const pose::ColmapBundle& refined, const Refined& done) {
-  const pose::AdjustOptions& adjust = options.refine.adjust;
-  if (!options.usual_housing.empty() || adjust.poses_known) return {};
+// The kind of port with which the poses are refined again, after a warning: the photographs fit
+// this kind better than the stated kind, whose numbers moved so far that the refined port is
+// impossible.
+std::optional<pose::PortKind> kind_for_second_try(const Options& options, const Input& input,
+                                                  const pose::ColmapBundle& refined,
+                                                  const Refined& done) {
   if (are_possible(to_housing(refined, input.housing))) return {};
-  const std::vector<pose::KindFit> fits = pose::fits_of_kinds(done.before, adjust);
-  const std::optional<pose::KindFit> better = pose::better_kind(fits);
-  if (!better || better->kind == pose::PortKind::none) return {};
+  const std::optional<OtherKind> other = other_kind(options, done.before);
+  if (!other || other->kind == pose::PortKind::none) return {};
   log_warning(
       "{}; the poses are refined again, with the usual numbers of {}: state the right kind "
       "of housing",
-      text_of(*better, fits.front()), pose::words_for(better->kind));
-  return better->kind;
+      other->evidence, pose::words_for(other->kind));
+  return other->kind;
 }
 
 // Tells the errors, checks the result, and writes it. `frame`: of the refined bundle.
@@ -433,7 +435,11 @@ void finish(const Options& options, const Input& input, const pose::ColmapBundle
     results.unused.push_back("--scale-from: " + line);
   warn(done.report, refined.bundle, options.refine, results.unused);
   if (registered) results.registered = &*registered;
-  results.is_other_kind = warn_of_other_kind(options, done.before);
+  if (const auto other = other_kind(options, done.before)) {
+    results.is_other_kind = true;
+    log_warning("{}; state the right kind of housing, or let --housing unknown find it",
+                other->evidence);
+  }
   write(options, refined, input, frame, results);
 }
 
@@ -512,7 +518,7 @@ int run(int argc, char** argv) {
     start_with(pose::PortKind::dome);
   say_input(input, refined);
   Refined done = refine_or_without_scale(options, refined, input, unused, frame);
-  if (const auto kind = other_kind(options, input, refined, done)) {
+  if (const auto kind = kind_for_second_try(options, input, refined, done)) {
     start_with(*kind);
     options.usual_housing = "unknown";
     done = refine_or_without_scale(options, refined, input, unused, frame);

@@ -11,11 +11,11 @@ namespace axial::pose {
 
 // Returns, by index of the camera, the free numbers that should keep their measured values.
 //
-// A number that is adjusted takes the noise of the observations with it: behind a flat port, index
-// and focal length move by two of their standard deviations as often as not, and depths with them.
-// Most measured numbers of a dive are nearly right, and few are wrong. Therefore a number is
-// adjusted only if that lowers the cost (AdjustOptions, in squared standard deviations) by more
-// than 6, which noise alone does for 1.4 % of right numbers.
+// Noise of the observations moves every number that is adjusted, and depths with it: behind a flat
+// port, index and focal length have nearly the same effect, so that their standard deviations are
+// large. Most measured numbers of a dive are nearly right, and few are wrong. Therefore a number is
+// adjusted only if its adjustment lowers the cost (the cost of adjust(), in squared standard
+// deviations) by more than 6. Noise alone lowers it so far for 1.4 % of right numbers.
 //
 // The costs follow from the result of adjust() with all free numbers: if the numbers F go back to
 // their measured values and all others follow, the cost grows by m' inverse(C) m, with the changes

@@ -4,18 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/order_statistics.h"
+
 namespace axial::video {
 namespace {
 
 constexpr double kNeighbourSeconds = 0.25;
 constexpr double kLeast = 0.75, kMost = 1.25;  // motion between chosen frames, in shares
 constexpr double kStart = 0.25;                // motion before the first chosen frame, in shares
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 // The sharpness of each frame beside that of its neighbours, and of itself.
 std::vector<double> relative_sharpness(std::span<const FrameMeasure> frames, double per_second) {
@@ -26,7 +22,7 @@ std::vector<double> relative_sharpness(std::span<const FrameMeasure> frames, dou
     const std::size_t end = std::min(frames.size(), i + reach + 1);
     std::vector<double> near;
     for (std::size_t k = begin; k < end; ++k) near.push_back(frames[k].sharpness);
-    const double usual = median_of(std::move(near));
+    const double usual = upper_median(std::move(near));
     relative.push_back(usual > 0 ? frames[i].sharpness / usual : 1);
   }
   return relative;

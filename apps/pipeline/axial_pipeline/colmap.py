@@ -90,7 +90,7 @@ def write_pairs(file, pairs):
 
 
 def listed_pairs(file):
-    """The option for the pairs of photographs that `file` lists, two names on each line."""
+    """The option for the pairs of photographs that `file` lists, as write_pairs() writes them."""
     return ["--match_list_path", file]
 
 
