@@ -86,6 +86,16 @@ class Links(unittest.TestCase):
                 self.assertIn(f"({page.name})", index)
 
 
+class Version(unittest.TestCase):
+    def test_changelog_and_citation_have_the_version_of_cmake(self):
+        version = re.search(r"project\(AxialMVS VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text())[1]
+        citation = (ROOT / "docs" / "CITATION.cff").read_text(encoding="utf-8")
+        changelog = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+        latest, date = re.search(r"^## \[(\d[^]]*)\] - (\S+)$", changelog, re.M).groups()
+        self.assertEqual(latest, version)
+        self.assertIn(f"\nversion: {version}\ndate-released: {date}\n", citation)
+
+
 class Messages(unittest.TestCase):
     def test_quoted_messages_are_in_the_source(self):
         """In troubleshooting.md, "..." stands for a value. A message may be put together from two

@@ -2,7 +2,7 @@
 """The arrows between the folders of the source tree (CONTRIBUTING.md, "The source tree"): a library
 links a library if and only if one of its files includes a header of that library. The build alone
 does not check this, because libraries are linked on behalf of other libraries, too, and because
-headers without functions need no link."""
+headers without functions need no link. The arrows that CONTRIBUTING.md draws are those of CMake."""
 
 import pathlib
 import re
@@ -29,7 +29,7 @@ def linked(folder, names):
     text = re.sub(r"#.*", "", (folder / "CMakeLists.txt").read_text(encoding="utf-8"))
     words = []
     for call, arguments in re.findall(r"(\w+)\s*\(([^()]*)\)", text):
-        if call == "add_axial_library":
+        if call in ("add_axial_library", "add_axial_app"):
             words += re.split(r"\bLINK\b", arguments, maxsplit=1)[-1].split()
         elif call == "target_link_libraries":
             words += [word.removeprefix("axial_") for word in arguments.split()[1:]]
@@ -76,6 +76,23 @@ def faults(root, linked_for):
     return found
 
 
+def needed(links, direct):
+    """The libraries of `links` that no other library of `links` links, directly or not."""
+    def below(name):
+        return set().union(*({other} | below(other) for other in direct[name]))
+    return links - set().union(*(below(name) for name in links))
+
+
+def arrows(root):
+    """The lines "folder -> folders" of the libraries and programs, as CONTRIBUTING.md draws them: without the
+    arrows that follow from others."""
+    folders = libraries(root)
+    direct = {name: linked(folder, set(folders)) for name, folder in folders.items()}
+    programs = {path.parent.name: linked(path.parent, set(folders)) for path in root.glob("apps/*/CMakeLists.txt")}
+    return {f"{name} -> {' '.join(sorted(needed(links, direct)))}"
+            for name, links in (direct | programs).items() if links}
+
+
 class Folders(unittest.TestCase):
     def test_includes_and_links_agree(self):
         self.assertEqual(faults(ROOT, LINKED_FOR), [])
@@ -89,6 +106,13 @@ class Folders(unittest.TestCase):
         self.assertEqual([name for name in built[2:] if not links[name]], [])
         for i, name in enumerate(built):
             self.assertLessEqual(links[name], set(built[:i]), name)
+
+
+    def test_contributing_draws_the_arrows_of_cmake(self):
+        text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+        lines = re.findall(r"^    (\w+ -> .*)$", text, re.M)
+        drawn = {arrow for line in lines for arrow in line.split("; ")}
+        self.assertEqual(sorted(drawn), sorted(arrows(ROOT)), "CONTRIBUTING.md, The source tree")
 
 
 class WrongFolders(unittest.TestCase):
@@ -135,6 +159,11 @@ class WrongFolders(unittest.TestCase):
         self.write("libs/low/private/part.h", "")
         self.write("refractive/ray.h", '#include "low/a.h"\n')
         self.expect("refractive does not link low")
+
+    def test_arrows_that_follow_from_others_are_not_drawn(self):
+        self.write("libs/high/CMakeLists.txt", "add_axial_library(high SOURCES b.cpp LINK low refractive)\n")
+        self.write("apps/Tool/CMakeLists.txt", "add_axial_app(Tool SOURCES main.cpp LINK high low)\n")
+        self.assertEqual(arrows(self.root), {"low -> refractive", "high -> low", "Tool -> high"})
 
     def test_private_headers_are_for_their_library(self):
         self.write("libs/high/b.cpp", '#include "low/a.h"\n#include "private/part.h"\n')

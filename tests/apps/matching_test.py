@@ -196,7 +196,7 @@ class Matching(InFolder):
     def test_wrong_options_are_refused(self):
         for given, said in (
                 (self.given("vocabulary"), "--matcher vocabulary: needs --vocabulary FILE, a vocabulary "
-                 "tree for COLMAP (docs/underwater-guide.md)"),
+                 "tree for COLMAP (docs/photographs.md)"),
                 (self.given("vocabulary", vocabulary="none"), "--vocabulary none: file not found"),
                 (self.given("vocabulary", vocabulary=str(self.folder)),
                  f"--vocabulary {self.folder}: file not found"),

@@ -218,7 +218,7 @@ class WithStandIns(StandIns):
                  f"{self.folder / 'images'} have a GPS position (latitude, longitude and altitude); "
                  "give --scale-from positions:FILE or choose another --matcher"),
                 (["vocabulary"], "--matcher vocabulary: needs --vocabulary FILE, a vocabulary tree "
-                 "for COLMAP (docs/underwater-guide.md)"),
+                 "for COLMAP (docs/photographs.md)"),
                 (["sequential", "--vocabulary", "lens"],
                  "--vocabulary lens: is only for --matcher vocabulary")):
             ended = self.ended("--matcher", *options)

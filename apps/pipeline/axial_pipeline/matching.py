@@ -36,7 +36,7 @@ def check(given):
     of --vocabulary, which becomes absolute."""
     if given.matcher == "vocabulary" and not given.vocabulary:
         raise Failure("--matcher vocabulary: needs --vocabulary FILE, a vocabulary tree for COLMAP "
-                      "(docs/underwater-guide.md)")
+                      "(docs/photographs.md)")
     if given.vocabulary and given.matcher != "vocabulary":
         raise Failure(f"--vocabulary {given.vocabulary}: is only for --matcher vocabulary")
     if given.vocabulary:

@@ -33,12 +33,12 @@ def options(script_folder, description):
     source.add_argument("--images", default="", help="folder of the raw underwater photographs; this option or --video is required")
     source.add_argument("--video", action="append", default=[], dest="videos", metavar="CLIP",
                         help="in place of --images: a video, of which sharp frames with enough motion between them "
-                        "become the photographs; may be given several times (docs/underwater-guide.md)")
+                        "become the photographs; may be given several times (docs/photographs.md)")
     parser.add_argument("--lens", required=True, action="append", dest="lenses", metavar="LENS",
                         help="the lens as calibrated in air: a COLMAP cameras.txt, or Calibmar's "
                         "calibration.yaml. Photographs of several cameras, sizes or focal lengths: several lenses in a "
                         "file, or this option several times, also as 18mm:FILE for photographs whose Exif data state "
-                        "this focal length (docs/underwater-guide.md)")
+                        "this focal length (docs/photographs.md)")
     parser.add_argument("--housing", required=True, help="the port (docs/formats.md), or Calibmar's "
                         "calibration.yaml; or flat, dome or unknown: usual numbers, which the photographs correct")
     parser.add_argument("-o", "--output", required=True, help="folder for all output files")
