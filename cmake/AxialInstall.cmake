@@ -17,7 +17,7 @@ install(FILES apps/pipeline/Snakefile DESTINATION share/axialmvs COMPONENT progr
 install(DIRECTORY apps/pipeline/profiles DESTINATION share/axialmvs COMPONENT programs)
 install(FILES README.md LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs
-  PATTERN "*.py" EXCLUDE PATTERN __pycache__ EXCLUDE)
+  PATTERN "*.py" EXCLUDE PATTERN __pycache__ EXCLUDE PATTERN paper EXCLUDE)
 
 # Man pages, from --help.
 find_program(AXIAL_HELP2MAN help2man)

@@ -14,7 +14,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "tests" / "
 from browser import CHROMIUM, Browser  # noqa: E402
 
 WIDE, NARROW = (1280, 800), (390, 844)  # [CSS px]
-QUALITY = 82
+QUALITY = 50
 
 
 def at(browser, x, y):

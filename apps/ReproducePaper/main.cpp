@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Repeats the paper's experiments: writes their numbers as JSON, and figures and tables made from
-// them.
-#include <fmt/format.h>
-
+// Repeats the paper's experiments: writes their numbers as JSON. docs/paper/documents.py makes
+// figures and tables from the numbers.
 #include "base/atomic_file.h"
 #include "base/log.h"
 #include "base/parallel.h"
@@ -10,22 +8,9 @@
 #include "experiments/results.h"
 #include "io/bytes/json.h"
 #include "options.h"
-#include "page.h"
 
 namespace axial::apps {
 namespace {
-
-void write_documents(const experiments::Experiment& experiment, const Arguments& arguments,
-                     const CommonOptions& common, const experiments::Json& results) {
-  const std::filesystem::path folder = results_folder(arguments, common);
-  write_atomically(folder / (experiment.name + ".json"), io::to_text(results) + "\n");
-  const auto documents = experiment.documents(results);
-  for (const experiments::Document& document : documents)
-    write_atomically(folder / document.file, document.text);
-  if (is_completeness(arguments))
-    for (const experiments::Document& document : documents) fmt::print("{}", document.text);
-  if (!arguments.page.empty()) update_page(in_working_folder(common, arguments.page), documents);
-}
 
 void reproduce(const experiments::Experiment& experiment, const Arguments& arguments,
                const CommonOptions& common) {
@@ -37,7 +22,7 @@ void reproduce(const experiments::Experiment& experiment, const Arguments& argum
     log_info("{}: other parts are not computed yet", experiment.name);
     return;
   }
-  write_documents(experiment, arguments, common, results);
+  write_atomically(folder / (experiment.name + ".json"), io::to_text(results) + "\n");
   std::filesystem::remove_all(work_folder(arguments, common, experiment.name));
   log_info("{}: {} parts in {}", experiment.name, experiment.parts.size(), folder.string());
 }
@@ -59,8 +44,6 @@ int run(int argc, char** argv) {
   if (!parsed.run) return parsed.exit_code;
   warn_of_no_effect(arguments, parsed);
   const auto experiments = chosen_experiments(arguments, parsed.common);
-  if (!arguments.page.empty())
-    check_page(in_working_folder(parsed.common, arguments.page), experiments);
   const ThreadLimit limit(parsed.common.max_threads);
   for (const experiments::Experiment& experiment : experiments)
     reproduce(experiment, arguments, parsed.common);

@@ -94,11 +94,11 @@ experiments::Experiment completeness_of(const Arguments& a, const CommonOptions&
   return experiments::completeness({work, common.max_threads}, options);
 }
 
-}  // namespace
-
 bool is_completeness(const Arguments& a) {
   return a.experiment == kCompleteness;
 }
+
+}  // namespace
 
 void warn_of_no_effect(const Arguments& a, const ParsedOptions& parsed) {
   if (is_completeness(a)) return;
@@ -123,9 +123,8 @@ ProgramOptions describe(Arguments& a) {
       .add_switch("quick", &a.quick,
                   "fewer samples and smaller images: results in a few minutes, in DIR/quick")
       .add("part", &a.part,
-           "compute only the parts whose names begin with this text; the last part also writes "
-           "figures and tables")
-      .add("page", &a.page, "Markdown page to update with the results");
+           "compute only the parts whose names begin with this text; the numbers of all parts are "
+           "written after the last part");
   declare_completeness(program.visible, a);
   // parse_options uses this name for the positional argument.
   program.hidden.add("input-file", &a.experiment, "the experiment");

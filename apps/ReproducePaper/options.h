@@ -12,7 +12,7 @@
 namespace axial::apps {
 
 struct Arguments {
-  std::string experiment, output, page;
+  std::string experiment, output;
   std::string part;  // compute only the parts whose names begin with this text
   bool quick = false;
   experiments::CompletenessOptions completeness;  // for the experiment `completeness`
@@ -21,9 +21,6 @@ struct Arguments {
 
 // Returns the options of ReproducePaper. Parsing the options fills `a`.
 ProgramOptions describe(Arguments& a);
-
-// Whether the experiment is `completeness`. The tables of this experiment are also printed.
-bool is_completeness(const Arguments& a);
 
 // Warns of each option that has no effect on the experiment.
 void warn_of_no_effect(const Arguments& a, const ParsedOptions& parsed);

@@ -13,8 +13,10 @@ packages=(
   # to build the page of ViewScene without npm
   esbuild libjs-three
   # to test
-  clang-format doxygen dpkg-dev file libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
+  clang-format doxygen dpkg-dev file libgtest-dev libgmock-dev librapidcheck-dev
   clang libclang-rt-dev
+  # for the laboratory (AXIAL_SCIENCE): benchmarks, and figures of docs/paper
+  libbenchmark-dev python3-matplotlib
   # to test the page of ViewScene
   chromium nodejs
   # to test the pipeline on a cluster

@@ -27,19 +27,14 @@ struct CompletenessOptions {
 // "completeness_closeup_water_true".
 std::string completeness_name(const CompletenessOptions& options);
 
+// Returns the tolerance of the evaluation [m]: `options.tolerance`, or that of the preset.
+double tolerance_of(const CompletenessOptions& options);
+
 // Returns the experiment. It has one part for each seed. The result of a part is the report of
 // EvaluateReconstruction without histograms, and "cpu_seconds", the CPU time of DensifyPointCloud
 // [s]. The scenes and clouds stay in `chain.work`. Error if a program of the chain cannot be read.
 // Part::compute runs the programs, and throws an Error if a program fails. Precondition: every
 // field of `options` has a value that its comment allows.
 Experiment completeness(const Chain& chain, const CompletenessOptions& options);
-
-// Returns one document, <completeness_name(options)>.md. Its table has one row for each seed and a
-// row of medians. If the results have classes of thickness, a second table shows them. `results`:
-// results of the experiment with the same options, in the form that Experiment::documents takes. A
-// number that the result of a seed does not contain is "-" and does not count for the median.
-// Precondition: every field of `options` has a value that its comment allows.
-std::vector<Document> completeness_documents(const CompletenessOptions& options,
-                                             const Json& results);
 
 }  // namespace axial::experiments

@@ -26,10 +26,4 @@ double Distribution::quantile(double q) const {
   return largest_;
 }
 
-double median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values.at(half) : 0.5 * (values.at(half - 1) + values.at(half));
-}
-
 }  // namespace axial::experiments

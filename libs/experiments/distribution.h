@@ -51,8 +51,4 @@ class Distribution {
   double sum_ = 0, largest_ = 0;
 };
 
-// The median of values in any order. Of an even number of values: the mean of the two middle
-// values. Precondition: there is at least one value.
-double median_of(std::vector<double> values);
-
 }  // namespace axial::experiments

@@ -5,29 +5,10 @@
 
 #include <set>
 
-#include "base/error.h"
-
 namespace axial::experiments {
 
 std::vector<Experiment> all_experiments(bool quick) {
   return {figure2(quick), runtime(quick), figure3(quick), figure4(quick)};
-}
-
-std::string series_title(const std::string& series) {
-  if (series == "fov_degrees") return "field of view [degrees]";
-  if (series == "distance_mm") return "interface distance [mm]";
-  if (series == "tilt_degrees") return "interface tilt [degrees]";
-  if (series == "plane_degrees") return "plane angle [degrees]";
-  if (series == "n_glass") return "refractive index of the glass";
-  if (series == "n_water") return "refractive index of the water";
-  fail("'{}' is not a parameter of the simulations", series);
-}
-
-std::string value_title(const std::string& series, double value) {
-  if (series == "distance_mm") return fmt::format("distance {:g} mm", value);
-  const std::string title = series_title(series);
-  if (series.starts_with("n_")) return fmt::format("{} {:g}", title, value);
-  return fmt::format("{} {:g}\u00b0", title.substr(0, title.find(" [")), value);
 }
 
 Json to_json(const CameraSetup& setup) {
@@ -57,10 +38,6 @@ std::vector<Variation> variations(const std::vector<Series>& series, int stereo_
       if (names.insert(part_name(one.name, value, stereo_number)).second)
         all.push_back(vary(one.name, value, stereo_number));
   return all;
-}
-
-const Json& result_of(const Json& results, const std::string& part) {
-  return results.at("parts").at(part).at("result");
 }
 
 }  // namespace axial::experiments

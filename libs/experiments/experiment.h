@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The common form of all experiments: independent parts, each computed once and stored, and
-// documents (figures and tables) made from the stored numbers alone.
+// The common form of all experiments: independent parts, each computed once and stored.
+// docs/paper/documents.py makes tables and figures from the stored numbers.
 #pragma once
 
 #include <functional>
@@ -23,20 +23,9 @@ struct Part {
   std::function<Json()> compute;
 };
 
-// A figure or table.
-struct Document {
-  std::string file;  // name of the file: "figure2.svg", "figure2.md"
-  std::string text;  // content of the file
-};
-
 struct Experiment {
   std::string name;  // valid as part of a file name
   std::vector<Part> parts;
-  // Makes the documents from the results of all parts. `results` is an object with the fields
-  // "experiment" (the name), "quick" (true or false) and "parts". The field "parts" is an object
-  // with a field for each part, by its name. The value of this field is an object with the fields
-  // "inputs" (Part::inputs) and "result" (the return value of Part::compute).
-  std::function<std::vector<Document>(const Json& results)> documents;
 };
 
 // The experiments of the paper's figures and run times. `quick`: the same parts with fewer samples,
@@ -55,17 +44,10 @@ struct Series {
   std::vector<double> values;
 };
 
-// In the next three functions, `series` is a name that vary() accepts, `value` is in the unit in
-// this name, and `stereo_number` is StereoSetup::number. The functions throw an Error for another
-// name.
-
-// Returns a title for the axis of a chart: "interface distance [mm]".
-std::string series_title(const std::string& series);
-// Returns a title for one value: "distance 20 mm".
-std::string value_title(const std::string& series, double value);
-
 // Returns the name of the part for one value of a series: "setup1_fov_degrees_100". The default
-// setup occurs in every series and has one name for all series: "setup1_default".
+// setup occurs in every series and has one name for all series: "setup1_default". `series` and
+// `value`: as for vary(). `stereo_number`: StereoSetup::number. Error if vary() does not accept the
+// name.
 std::string part_name(const std::string& series, double value, int stereo_number);
 
 // Returns one variation for each value of each series, in the order of the series and values. The
@@ -76,9 +58,5 @@ std::vector<Variation> variations(const std::vector<Series>& series, int stereo_
 // Return all fields of the setup, as inputs of a part (Part::inputs).
 Json to_json(const CameraSetup& setup);
 Json to_json(const StereoSetup& setup);
-
-// Returns results["parts"][part]["result"]. `results` has the form that Experiment::documents
-// takes. Precondition: `results` contains the part.
-const Json& result_of(const Json& results, const std::string& part);
 
 }  // namespace axial::experiments

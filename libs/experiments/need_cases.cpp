@@ -104,22 +104,4 @@ std::vector<NeedCase> need_cases(bool quick) {
   return all;
 }
 
-std::string title_of(const NeedCase& one) {
-  const auto value = [&](const char* format) {
-    return fmt::format(fmt::runtime(format), one.value);
-  };
-  if (one.series == "port_distance_mm") return value("lens to glass {:g} mm");
-  std::string scaled =
-      fmt::format("everything but the port, times {:g}", one.scene.scale / usual_scene().scale);
-  if (one.series == "scale") return scaled;
-  if (one.series == "tilt_degrees") return value("tilt {:g}\u00b0");
-  if (one.series == "near_tilt_degrees") return scaled + value(", and tilt {:g}\u00b0");
-  if (one.series == "fov_degrees") return value("field of view {:g}\u00b0");
-  if (one.series == "reef_relief") return value("seen from above, heights times {:g}");
-  if (one.series == "relief") return value("heights times {:g}");
-  if (one.series == "second_survey") return value("second survey, distance times {:g}");
-  if (one.series == "usual") return "the usual case";
-  return "scene '" + one.series + "' as it comes";
-}
-
 }  // namespace axial::experiments

@@ -27,7 +27,4 @@ struct NeedCase {
 // whose lens is calibrated in another scene.
 std::vector<NeedCase> need_cases(bool quick);
 
-// A title for the table, such as "tilt 6°".
-std::string title_of(const NeedCase& one);
-
 }  // namespace axial::experiments

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "base/hash.h"
-#include "experiments/distribution.h"
+#include "base/order_statistics.h"
 #include "experiments/table_search.h"
 #include "refractive/polynomial_projection.h"
 
@@ -137,8 +137,8 @@ std::vector<MethodTime> time_projections(const CameraSetup& setup, int width, in
   std::vector<MethodTime> results(methods.size());
   for (std::size_t m = 0; m < methods.size(); ++m) {
     results[m].method = methods[m].name;
-    results[m].nanoseconds = 1e9 * median_of(times[m]);
-    results[m].ratio = median_of(ratios[m]);
+    results[m].nanoseconds = 1e9 * upper_median(times[m]);
+    results[m].ratio = upper_median(ratios[m]);
     measure_errors(methods[m], own(methods[m]), results[m]);
   }
   return results;

@@ -16,7 +16,7 @@ namespace axial::experiments {
 // scattered.
 enum class Order { kScattered, kReading };
 
-// Precondition of time_projections(): all numbers are at least 1.
+// Precondition of time_projections(): all numbers are at least 1, and `repetitions` is odd.
 struct TimingOptions {
   int points = 20000;          // points per repetition, for all methods but "analytic"
   int analytic_points = 1000;  // points per repetition for "analytic"; at most `points`

@@ -1,38 +1,41 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The paper's figures 5 and 6: a scene reconstructed in air and through a port, with the paper's
 // method, with our method, and with one half (projection or warp) of each.
-#include "experiments/reconstruction.h"
-
 #include <fmt/format.h>
 
+#include <array>
+
 #include "base/error.h"
+#include "experiments/chained.h"
 #include "experiments/judge.h"
 
 namespace axial::experiments {
 
-const std::array<Method, 5>& reconstruction_methods() {
+namespace {
+
+// A way from photographs to a dense cloud.
+struct Method {
+  const char* name;  // name of the method's field in the results
+  bool in_water;     // true: photographs through the port; false: photographs in air
+  Words options;     // options of DensifyPointCloud, besides those of input and port
+  // The clouds of every method are measured. True: the depth maps on true poses and, on COLMAP's
+  // poses, the completeness for each of kCompletenessViews are measured, too.
+  bool judged_closely;
+};
+
+const std::array<Method, 5>& all_methods() {
   static const std::array<Method, 5> all{
-      {{"air", "in air", false, {}, true},
-       {"ours", "refracted, our method", true, {}, true},
-       {"line_search", "with the paper's projection", true, {"--projection", "line-search"}, false},
-       {"homography", "with the paper's warp", true, {"--warp", "homography"}, false},
-       {"papers",
-        "refracted, the paper's method",
-        true,
-        {"--projection", "line-search", "--warp", "homography"},
-        true}}};
+      {{"air", false, {}, true},
+       {"ours", true, {}, true},
+       {"line_search", true, {"--projection", "line-search"}, false},
+       {"homography", true, {"--warp", "homography"}, false},
+       {"papers", true, {"--projection", "line-search", "--warp", "homography"}, true}}};
   return all;
 }
 
-std::string colmap_part(int seed) {
-  return fmt::format("seed{}_colmap_poses", seed);
-}
-
-std::string true_part(int seed) {
-  return fmt::format("seed{}_true_poses", seed);
-}
-
-namespace {
+// Completeness is measured once for each of these numbers n, for the places that at least n cameras
+// under water see. Numbers above the number of cameras are left out.
+constexpr std::array<std::size_t, 4> kCompletenessViews{2, 3, 4, 5};
 
 constexpr int kPhotographWidth = 480;
 
@@ -49,7 +52,7 @@ Study study(bool quick) {
   all.scene.height = quick ? 240 : 1536;
   all.scene.views = quick ? 4 : 10;
   all.scene.coarseness = quick ? 4 : 1;
-  for (const Method& method : reconstruction_methods())
+  for (const Method& method : all_methods())
     if (!quick || method.judged_closely) all.on_true_poses.push_back(method);
   all.evaluation.samples = quick ? 20000 : 200000;
   all.evaluation.picture_width = quick ? 160 : 480;
@@ -64,7 +67,7 @@ std::string dense_name(const std::string& poses, const Method& method) {
 
 // Removes the clouds of a finished part. An interrupted run needs them.
 void remove_clouds(const std::string& poses, const SimulatedScene& scene) {
-  for (const Method& method : reconstruction_methods())
+  for (const Method& method : all_methods())
     std::filesystem::remove_all(scene.folder / dense_name(poses, method));
 }
 
@@ -128,7 +131,7 @@ Json clouds_on_colmap_poses(const Chain& chain, const Study& study) {
   Json result{{"images", poses.images}, {"centre_rms", poses.centre_rms}};
   for (const char* medium : {"air", "water"})
     result["photographs"][medium] = photograph(scene, medium, kPhotographWidth);
-  for (const Method& method : reconstruction_methods()) {
+  for (const Method& method : all_methods()) {
     const auto dense = dense_of(chain, "colmap", scene, poses.model, method);
     Json& cloud = result["clouds"][method.name];
     cloud = cloud_errors(chain, dense, scene, study.evaluation);
@@ -180,10 +183,11 @@ std::vector<Part> parts(const Chain& chain, bool quick) {
               {"evaluation", to_json(one.evaluation)},
               {"methods", to_json(methods)}};
     };
-    const auto& every = reconstruction_methods();
-    all.push_back({colmap_part(seed), inputs(5, {every.begin(), every.end()}),
+    const auto& every = all_methods();
+    all.push_back({fmt::format("seed{}_colmap_poses", seed),
+                   inputs(5, {every.begin(), every.end()}),
                    [=] { return clouds_on_colmap_poses(chain, one); }});
-    all.push_back({true_part(seed), inputs(5, one.on_true_poses),
+    all.push_back({fmt::format("seed{}_true_poses", seed), inputs(5, one.on_true_poses),
                    [=] { return maps_on_true_poses(chain, one); }});
   }
   return all;
@@ -192,9 +196,7 @@ std::vector<Part> parts(const Chain& chain, bool quick) {
 }  // namespace
 
 Experiment reconstruction(const Chain& chain, bool quick) {
-  return {"reconstruction", parts(chain, quick), [seeds = study(quick).seeds](const Json& results) {
-            return reconstruction_documents(results, seeds);
-          }};
+  return {"reconstruction", parts(chain, quick)};
 }
 
 }  // namespace axial::experiments

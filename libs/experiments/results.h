@@ -24,9 +24,10 @@ std::vector<Part> chosen_parts(const Experiment& experiment, const std::string& 
 void compute(const std::string& experiment, const std::vector<Part>& parts,
              const std::filesystem::path& folder, const ProgressSink& progress);
 
-// Returns all stored results in the form that Experiment::documents takes, with `quick` as its
-// field "quick". `folder`: as for compute(). Returns null unless all parts of the experiment are
-// finished.
+// Returns all stored results of the experiment as an object with the fields "experiment" (the
+// name), "quick" (the argument) and "parts". The field "parts" is an object with a field for each
+// part, by its name: an object with the fields "inputs" (Part::inputs) and "result" (the return
+// value of Part::compute). `folder`: as for compute(). Returns null unless all parts are finished.
 Json kept_results(const Experiment& experiment, bool quick, const std::filesystem::path& folder);
 
 // Wall-clock times [s] of the computations of the parts, on the machines that computed the parts.

@@ -96,6 +96,17 @@ class Version(unittest.TestCase):
         self.assertIn(f"\nversion: {version}\ndate-released: {date}\n", citation)
 
 
+class Pictures(unittest.TestCase):
+    def test_all_together_are_small(self):
+        pictures = list((ROOT / "docs" / "images").iterdir())
+        self.assertLess(sum(picture.stat().st_size for picture in pictures), 1_000_000)
+
+    def test_each_is_shown_by_a_page(self):
+        text = "".join(page.read_text(encoding="utf-8") for page in PAGES)
+        for picture in (ROOT / "docs" / "images").iterdir():
+            self.assertIn(f"images/{picture.name}", text)
+
+
 class Messages(unittest.TestCase):
     def test_quoted_messages_are_in_the_source(self):
         """In troubleshooting.md, "..." stands for a value. A message may be put together from two

@@ -99,7 +99,7 @@ class Folders(unittest.TestCase):
 
     def test_all_libraries_of_the_build_are_read(self):
         text = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
-        built = re.search(r"set\(AXIAL_LIBRARIES ([^)]*)\)", text)[1].split()
+        built = " ".join(re.findall(r"(?:set\(|APPEND )AXIAL_LIBRARIES ([^)]*)\)", text)).split()
         self.assertEqual(set(libraries(ROOT)), set(built))
         links = {name: linked(folder, set(built)) for name, folder in libraries(ROOT).items()}
         self.assertEqual(links["refractive"] | links["base"], set())

@@ -4,7 +4,7 @@
 
     quality_curve.py [--scene SCENE] [--medium air|water] [--only OPTION...] -o DIR
 
-Writes DIR/table.json, DIR/table.md and DIR/curve.svg. Poses are true. A setting that the same
+Writes DIR/table.json, DIR/table.md and DIR/curve.png. Needs matplotlib. Poses are true. A setting that the same
 binaries ran in DIR before is not run again. Scenes: `closeup` and `reef`; `closeup-hazy` and
 `reef-hazy`, the same in haze that leaves a seventh of the contrast, in air and in water; `small`,
 six views like `closeup` at 480 x 360, for experiments.
@@ -16,8 +16,9 @@ import json
 import pathlib
 import sys
 
+import matplotlib.figure
+
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from benchmarks import svg_chart  # noqa: E402
 from benchmarks.end_to_end import markdown  # noqa: E402
 from support import runs  # noqa: E402
 
@@ -102,11 +103,20 @@ def table(curves, default):
 
 
 def figure(curves, default, title):
-    point = lambda value, r: svg_chart.Point(r["cpu"], r["f"], str(value))
-    groups = {f"--{option}": [point(value, r) for value, r in curve.items()]
-              for option, curve in curves.items()}
-    return svg_chart.chart(groups, svg_chart.Point(default["cpu"], default["f"], ""), title,
-                           "CPU time [s]", "F-score")
+    """A curve for each option, with the values of the option beside its points."""
+    drawing = matplotlib.figure.Figure(figsize=(8, 5), layout="constrained")
+    panel = drawing.subplots()
+    for option, curve in curves.items():
+        line, = panel.plot([r["cpu"] for r in curve.values()], [r["f"] for r in curve.values()],
+                           marker=".", label=f"--{option}")
+        for value, r in curve.items():
+            if r is not default:
+                panel.annotate(value, (r["cpu"], r["f"]), (4, 4), textcoords="offset points", color=line.get_color())
+    panel.plot(default["cpu"], default["f"], "ko", fillstyle="none", markersize=9, label="default")
+    panel.set(title=title, xlabel="CPU time [s]", ylabel="F-score", xscale="log")
+    panel.grid(True, which="both", color="#e3e3e3")
+    panel.legend()
+    return drawing
 
 
 def main():
@@ -123,7 +133,7 @@ def main():
     (output / "table.json").write_text(json.dumps(curves, indent=1))
     (output / "table.md").write_text(table(curves, default))
     title = f"{arguments.scene}, {arguments.medium}: one option changed at a time"
-    (output / "curve.svg").write_text(figure(curves, default, title))
+    figure(curves, default, title).savefig(output / "curve.png", dpi=80)
     print(table(curves, default))
 
 

@@ -8,8 +8,6 @@
 #include <numeric>
 #include <random>
 
-#include "experiments/tables.h"
-
 namespace axial::experiments {
 namespace {
 
@@ -35,25 +33,6 @@ TEST(Distribution, AgreesWithTheSortedErrors) {
   EXPECT_EQ(first.beyond(), beyond);
   EXPECT_EQ(first.quantile(0.999), errors.back());  // beyond the bins
   EXPECT_EQ(std::accumulate(first.counts().begin(), first.counts().end(), first.beyond()), 20000);
-}
-
-TEST(Tables, RoundToSignificantDigits) {
-  EXPECT_EQ(significant(0.26714), "0.267");
-  EXPECT_EQ(significant(0.0099996), "0.0100");
-  EXPECT_EQ(significant(24617.3), "24600");
-  EXPECT_EQ(significant(1.0), "1.00");
-  EXPECT_EQ(significant(-0.000012345, 2), "-0.000012");
-  EXPECT_EQ(significant(0), "0");
-}
-
-TEST(Tables, AreMarkdown) {
-  EXPECT_EQ(markdown_table({{"a", "b"}, {"1", "2"}}), "| a | b |\n|---|---|\n| 1 | 2 |\n");
-}
-
-TEST(MedianOf, IsTheMiddleOrTheMeanOfTheTwo) {
-  EXPECT_EQ(median_of({7}), 7);
-  EXPECT_EQ(median_of({9, 1, 4}), 4);
-  EXPECT_EQ(median_of({9, 1, 4, 5}), 4.5);
 }
 
 }  // namespace

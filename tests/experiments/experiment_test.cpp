@@ -5,9 +5,6 @@
 
 #include <set>
 
-#include "experiments/cells.h"
-#include "experiments/verdicts.h"
-
 namespace axial::experiments {
 namespace {
 
@@ -21,20 +18,6 @@ TEST(Variations, EachChangesItsOwnParameterAndTheDefaultIsOnePart) {
   EXPECT_EQ(vary("n_glass", 1.49).setup.camera.n_glass, 1.49);
   EXPECT_EQ(vary("n_water", 1.34).setup.camera.n_water, 1.34);
   EXPECT_EQ(vary("n_water", 1.34).setup.camera.n_glass, CameraSetup().n_glass);
-  EXPECT_EQ(value_title("n_water", 1.34), "refractive index of the water 1.34");
-}
-
-TEST(Verdicts, SayYesOrNo) {
-  EXPECT_EQ(verdict_table({{"at most 1", "0.5", true}, {"at most 1", "2", false}}),
-            "| asked | seen | met |\n|---|---|---|\n"
-            "| at most 1 | 0.5 | yes |\n| at most 1 | 2 | no |\n");
-}
-
-TEST(Cells, AreMillimetresAndPercentOrADash) {
-  EXPECT_EQ(millimetres(0.00087125), "0.871");
-  EXPECT_EQ(percent(0.7416), "74.2");
-  EXPECT_EQ(millimetres(nullptr), "-");
-  EXPECT_EQ(percent(nullptr), "-");
 }
 
 }  // namespace

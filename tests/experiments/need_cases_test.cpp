@@ -16,29 +16,19 @@ NeedCase case_named(const std::string& name) {
   throw std::invalid_argument(name);
 }
 
-// A name names a file, and a title a row of the table.
-TEST(NeedCases, DifferInNameTitleAndWhatIsDone) {
+// A name names a file and a row of the table.
+TEST(NeedCases, DifferInNameAndWhatIsDone) {
   const std::vector<NeedCase> all = need_cases(false);
-  std::set<std::string> names, titles, done;
+  std::set<std::string> names, done;
   for (const NeedCase& one : all) {
     names.insert(one.name);
-    titles.insert(title_of(one));
     const Json calibrated = one.calibrated_in ? to_json(*one.calibrated_in) : Json();
     done.insert(to_json(one.scene).dump() + calibrated.dump());
   }
   EXPECT_EQ(names.size(), all.size());
-  EXPECT_EQ(titles.size(), all.size());
   EXPECT_EQ(done.size(), all.size());
   EXPECT_TRUE(all.front().is_usual());
   EXPECT_FALSE(all.front().calibrated_in);
-}
-
-TEST(NeedCases, TitlesSayWhatIsVaried) {
-  EXPECT_EQ(title_of(case_named("usual")), "the usual case");
-  EXPECT_EQ(title_of(case_named("tilt_degrees_6")), "tilt 6\u00b0");
-  EXPECT_EQ(title_of(case_named("scale_2")), "everything but the port, times 4");
-  EXPECT_EQ(title_of(case_named("near_tilt_degrees_6")),
-            "everything but the port, times 0.5, and tilt 6\u00b0");
 }
 
 // Other ground at another distance, with the lens that was calibrated in the usual scene.

@@ -89,7 +89,6 @@ TEST(ProjectionTimes, StandBesideErrors) {
     const auto times = time_projections({}, 320, 240, order, {2000, 50, 3});
     ASSERT_EQ(times.size(), 5u);
     for (const MethodTime& time : times) {
-      EXPECT_GT(time.nanoseconds, 0) << time.method;
       EXPECT_EQ(time.points, time.method == "analytic" ? 50 : 2000);
       EXPECT_LT(time.missed, time.points / 50);
       const bool searches = time.method.starts_with("line_search");
@@ -99,6 +98,9 @@ TEST(ProjectionTimes, StandBesideErrors) {
     EXPECT_EQ(times[0].method, "exact");
     EXPECT_EQ(times[0].ratio, 1);
     EXPECT_LT(times[0].mean_error, 1e-3);
+    // Measured: 400 times. Other programs may run on the machine.
+    EXPECT_GT(times[4].ratio, 20);
+    EXPECT_GT(times[4].nanoseconds, 20 * times[0].nanoseconds);
   }
 }
 

@@ -36,11 +36,12 @@ class Results : public ::testing::Test {
             }};
   }
   Experiment experiment(int version) {
-    return {"two", {part("left", version), part("right", version)}, {}};
+    return {"two", {part("left", version), part("right", version)}};
   }
   void compute_all(const Experiment& one) { compute(one.name, one.parts, folder_, {}); }
   std::string value(const Experiment& one, const std::string& name) {
-    return result_of(kept_results(one, false, folder_), name).at("value").get<std::string>();
+    const Json kept = kept_results(one, false, folder_);
+    return kept.at("parts").at(name).at("result").at("value").get<std::string>();
   }
   std::vector<fs::path> files(const std::string& name, const std::string& extension) {
     std::vector<fs::path> found;
