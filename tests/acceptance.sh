@@ -14,6 +14,6 @@ cmake --preset release -DAXIAL_TESTS=ON --log-level=WARNING
 cmake --build --preset release --target InterfaceCOLMAP DensifyPointCloud SimulateUnderwater \
   EvaluateReconstruction AlignModel RefinePoses ReconstructMesh RefineMesh TextureMesh \
   MapSurface CompareSurveys TransformScene ViewScene CalibrateHousing ReproducePaper ExtractFrames \
-  map_check change_check held_out_check seam_check unseen_check static_overlay \
+  map_check change_check held_out_check seam_check unseen_check \
   drawn_boards dive_photograph matching_benchmark
 exec python3 tests/acceptance/acceptance.py "$@"

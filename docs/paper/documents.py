@@ -16,12 +16,13 @@ import pathlib
 import re
 import sys
 
+import clouds
 import reconstruction
-import tables
+import simulations
 
-TABLES = {"figure2": tables.figure2, "runtime": tables.runtime, "figure3": tables.figure3,
-          "figure4": tables.figure4, "reconstruction": reconstruction.reconstruction,
-          "sensitivity": tables.sensitivity, "need": tables.need}
+TABLES = {"figure2": simulations.figure2, "runtime": simulations.runtime, "figure3": simulations.figure3,
+          "figure4": simulations.figure4, "reconstruction": reconstruction.reconstruction,
+          "sensitivity": clouds.sensitivity, "need": clouds.need}
 END = "<!-- end -->"
 
 
@@ -96,7 +97,7 @@ def main():
     found = results_in(folder, arguments.experiments)
     text = checked_page(page, found) if page else ""
     for name, results in found.items():
-        documents = TABLES.get(name, tables.completeness)(results)
+        documents = TABLES.get(name, clouds.completeness)(results)
         for file, content in documents.items():
             written(folder / file, content.encode())
         if name not in TABLES:

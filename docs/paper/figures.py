@@ -9,8 +9,10 @@ import matplotlib
 import matplotlib.figure
 import numpy
 
-import reconstruction as clouds_and_maps
-import tables
+import cells
+import clouds
+import reconstruction as reconstruction_tables
+import simulations
 
 # Colours by Okabe and Ito, which colour-blind readers can distinguish.
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#56b4e9", "#000000")
@@ -65,14 +67,14 @@ def density(method, unit):
 
 
 def figure2(results):
-    series = tables.series_of(results)
-    figure, panels = grid("Reprojection error, " + tables.sampling(results), 2, len(series), 2.9, 2.8)
+    series = simulations.series_of(results)
+    figure, panels = grid("Reprojection error, " + simulations.sampling(results), 2, len(series), 2.9, 2.8)
     kinds = (("line_search", "Algorithm 1", 1, "error [px]"),
              ("exact", "exact projection, float", 1e-6, "error [millionths of a pixel]"))
     for k, (method, title, unit, x_title) in enumerate(kinds):
         for panel, (name, values) in zip(panels[k * len(series):], series.items()):
-            curves = {f"{tables.value_title(name, value)}: mean "
-                      f"{tables.significant(result[method]['mean'])} px": density(result[method], unit)
+            curves = {f"{simulations.value_title(name, value)}: mean "
+                      f"{cells.significant(result[method]['mean'])} px": density(result[method], unit)
                       for value, result in values}
             for label, points in curves.items():
                 panel.plot(*zip(*points), label=label, linewidth=1)
@@ -84,10 +86,10 @@ def figure2(results):
 def runtime(results):
     figure, panels = grid("One forward projection, one thread, float", 1, 2, 4, 3)
     titles = ("points scattered over the image", "neighbouring points in turn")
-    for panel, order, title in zip(panels, tables.ORDERS, titles):
-        curves = {name: [(size, tables.results_of(results, f"{order}_{size}mp")[method]["nanoseconds"])
-                         for size in tables.megapixels(results)]
-                  for method, name in tables.PROJECTIONS.items()}
+    for panel, order, title in zip(panels, simulations.ORDERS, titles):
+        curves = {name: [(size, cells.results_of(results, f"{order}_{size}mp")[method]["nanoseconds"])
+                         for size in simulations.megapixels(results)]
+                  for method, name in simulations.PROJECTIONS.items()}
         lines(panel, curves, title, "image size [megapixels]", "time per projection [ns]")
     one_legend(figure, panels[0])
     return {"runtime.png": figure}
@@ -96,10 +98,10 @@ def runtime(results):
 def figure3(results):
     figures = {}
     for setup in (1, 2):
-        result = tables.results_of(results, f"setup{setup}")
+        result = cells.results_of(results, f"setup{setup}")
         side = result["texels_across"]
         panels = {title: numpy.reshape(result["errors"][warp], (side, side))
-                  for warp, title in tables.SHOWN_WARPS.items()}
+                  for warp, title in simulations.SHOWN_WARPS.items()}
         highest = max(values.max() for values in panels.values())
         figures[f"figure3_setup{setup}.png"] = maps(
             f"Error of every texel of every patch, 10 x 10 image, setup {setup}", panels, 4, highest)
@@ -108,26 +110,26 @@ def figure3(results):
 
 def patch_maps(results, setup, warp):
     panels, side = {}, 100
-    for series, values in tables.series_of(results, setup, "_100px").items():
+    for series, values in simulations.series_of(results, setup, "_100px").items():
         for value, result in values:
-            mean = tables.significant(result["warps"][warp]["mean"])
-            panels[f"{tables.value_title(series, value)}:\nmean {mean} px"] = 1e-6 * numpy.reshape(
+            mean = cells.significant(result["warps"][warp]["mean"])
+            panels[f"{simulations.value_title(series, value)}:\nmean {mean} px"] = 1e-6 * numpy.reshape(
                 result["maps_in_millionths"][warp], (side, side))
-    return maps(f"Mean patch error, 100 x 100 image, setup {setup}: {tables.WARPS[warp]}", panels, 6,
+    return maps(f"Mean patch error, 100 x 100 image, setup {setup}: {simulations.WARPS[warp]}", panels, 6,
                 max(values.max() for values in panels.values()))
 
 
 def figure4(results):
     figures = {f"figure4_setup{setup}_{warp}.jpg": patch_maps(results, setup, warp)
                for setup in (1, 2) for warp in ("papers", "first_order")}
-    series = tables.series_of(results, 1, "_2048px")
+    series = simulations.series_of(results, 1, "_2048px")
     figure, panels = grid("Mean patch error, 2048 x 2048 image", 2, len(series), 2.3, 2.1)
     for k, setup in enumerate((1, 2)):
         for panel, (name, values) in zip(panels[k * len(series):],
-                                         tables.series_of(results, setup, "_2048px").items()):
+                                         simulations.series_of(results, setup, "_2048px").items()):
             curves = {title: [(value, result["warps"][warp]["mean"]) for value, result in values]
-                      for warp, title in tables.WARPS.items()}
-            lines(panel, curves, f"setup {setup}", tables.SERIES_TITLES[name], "mean e_BH [px]")
+                      for warp, title in simulations.WARPS.items()}
+            lines(panel, curves, f"setup {setup}", simulations.SERIES_TITLES[name], "mean e_BH [px]")
     one_legend(figure, panels[0])
     return {**figures, "figure4_means.png": figure}
 
@@ -144,7 +146,7 @@ def need_points(results, series, usual):
     measured = {"scale": "scene_distance", "relief": "range_ratio", "reef_relief": "range_ratio"}
     points = []
     for name, part in results["parts"].items():
-        of, value = tables.need_case(name)
+        of, value = clouds.need_case(name)
         if of == series or (name == "usual" and series not in ("reef_relief", "second_survey")):
             field = measured.get(series)
             x = part["result"][field] if field else usual if name == "usual" else value
@@ -185,8 +187,8 @@ def reconstruction(results):
     """Pictures of the first seed."""
     first = next(iter(results["parts"].values()))
     colors = f"0 to {1e3 * first['inputs']['evaluation']['color_max']:g} mm"
-    on_colmaps, on_true = (clouds_and_maps.parts_of(results, poses)[0] for poses in ("colmap", "true"))
-    titles = {method: clouds_and_maps.METHODS[method] for method in clouds_and_maps.JUDGED}
+    on_colmaps, on_true = (reconstruction_tables.parts_of(results, poses)[0] for poses in ("colmap", "true"))
+    titles = {method: reconstruction_tables.METHODS[method] for method in reconstruction_tables.JUDGED}
     return {
         "reconstruction_views.jpg": sheet(
             "The first of the views", {"in air": on_colmaps["photographs"]["air"],

@@ -4,7 +4,7 @@ over the seeds unless a column says otherwise."""
 
 import statistics
 
-from tables import millimetres, percent, results_of, significant, table, verdicts
+from cells import millimetres, percent, results_of, significant, table, verdicts
 
 METHODS = {"air": "in air", "ours": "refracted, our method", "line_search": "with the paper's projection",
            "homography": "with the paper's warp", "papers": "refracted, the paper's method"}

@@ -10,16 +10,14 @@
 
 namespace axial::experiments {
 
-// A scene, and the parameter in which the scene differs from the usual case.
+// A scene that differs from the usual case in one parameter, or is another scene.
 struct NeedCase {
-  std::string name;    // name of the part (Part::name)
-  std::string series;  // name of the varied parameter, with its unit if any: "tilt_degrees"
-  double value;        // of the parameter, in the unit in `series`; 0 if the parameter has no value
+  // Name of the part (Part::name): the parameter, with its unit if any, and its value:
+  // "tilt_degrees_6". Without a parameter: "usual", or the preset.
+  std::string name;
   SceneOptions scene;
   // The scene in which the lens is calibrated. Empty: the lens is calibrated in `scene`.
   std::optional<SceneOptions> calibrated_in;
-
-  bool is_usual() const { return name == "usual"; }
 };
 
 // Returns all cases. The usual case comes first. The names are unique. `quick`: only three cases,

@@ -2,6 +2,7 @@
 """The slow acceptance points. tests/acceptance.sh runs this script and explains its use."""
 
 import hashlib
+import importlib
 import json
 import pathlib
 import subprocess
@@ -11,26 +12,12 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from support.runs import ROOT, Skipped  # noqa: E402
 from points import BASE, POINTS  # noqa: E402
-# Each module registers its points. The order of the imports is that of the points in the table.
-import clouds  # noqa: E402, F401
-import photographs  # noqa: E402, F401
-import times  # noqa: E402, F401
-import quality  # noqa: E402, F401
-import meshes  # noqa: E402, F401
-import unseen  # noqa: E402, F401
-import maps  # noqa: E402, F401
-import surveys  # noqa: E402, F401
-import whole_programs  # noqa: E402, F401
-import memory  # noqa: E402, F401
-import tiles  # noqa: E402, F401
-import survey_page  # noqa: E402, F401
-import still  # noqa: E402, F401
-import false_alarms  # noqa: E402, F401
-import dives  # noqa: E402, F401
-import random_dives  # noqa: E402, F401
-import lawnmower  # noqa: E402, F401
-import boards  # noqa: E402, F401
-import pair_costs  # noqa: E402, F401
+
+# Each module registers its points. The order of the modules is that of the points in the table.
+for module in ("clouds", "photographs", "times", "quality", "meshes", "unseen", "maps", "surveys",
+               "whole_programs", "memory", "tiles", "survey_page", "still", "false_alarms", "dives",
+               "random_dives", "lawnmower", "boards", "pair_costs"):
+    importlib.import_module(module)
 
 
 def source_state():

@@ -6,7 +6,7 @@ import json
 import shutil
 import subprocess
 
-from points import point
+from points import kept, point
 from support.runs import BIN, measured
 
 DRAWS, SIGMAS, KNOWN = 40, 3, 0.95
@@ -14,12 +14,9 @@ DRAWS, SIGMAS, KNOWN = 40, 3, 0.95
 NUMBERS = ("right", "down", "distance")
 
 
-def draw(work, seed):
+def draw(folder, seed):
     """The result of one draw: how many photographs hold a piece and are used, and the errors of the
     port in standard deviations."""
-    folder, result = work / "boards" / str(seed), work / "boards" / f"{seed}.json"
-    if result.exists():
-        return json.loads(result.read_text())
     folder.mkdir(parents=True, exist_ok=True)
     truth = json.loads(subprocess.run([BIN / "drawn_boards", str(seed), folder], check=True,
                                       capture_output=True, text=True).stdout)
@@ -33,7 +30,6 @@ def draw(work, seed):
               for name, found in zip(NUMBERS, report["free"], strict=True)]
     found = {"hold": truth["photographs"], "used": len(report["photographs"]),
              "pieces": report["pieces"], "errors": errors, "distance_mm": report["free"][2]["sigma"]}
-    result.write_text(json.dumps(found))
     shutil.rmtree(folder)
     return found
 
@@ -42,7 +38,9 @@ def draw(work, seed):
        f"{DRAWS} draws: no fewer photographs used than hold a piece of 3 x 4 corners; the port within "
        f"{SIGMAS} sigma in {KNOWN:.0%} of the draws")
 def pieces_of_boards(work):
-    draws = [draw(work, seed) for seed in range(1, DRAWS + 1)]
+    folder = work / "boards"
+    draws = [kept(folder / f"{seed}.json", lambda seed=seed: draw(folder / str(seed), seed))
+             for seed in range(1, DRAWS + 1)]
     fewer = sum(one["used"] < one["hold"] for one in draws)
     known = sum(max(map(abs, one["errors"])) <= SIGMAS for one in draws) / len(draws)
     total = {key: sum(one[key] for one in draws) for key in ("hold", "used", "pieces")}

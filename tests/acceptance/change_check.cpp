@@ -1,32 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Compares the maps of CompareSurveys with the true change of SimulateUnderwater. Usage:
 //
-//     change_check SEED CHANGE [PICTURE]
+//     change_check SEED CHANGE
 //
 // Both surveys were made by SimulateUnderwater --preset reef --seed SEED, the second one also with
-// --changed. The maps CHANGE.difference.tif and CHANGE.significant.tif were made by CompareSurveys
-// with --up 0,0,1 and true poses. A pixel has changed if one of 3 x 3 vertical rays meets the
-// highest surfaces of both surveys at heights that differ by more than 0.1 mm. Prints:
+// --changed. The map CHANGE.change.significant.tif was made by CompareSurveys with --up 0,0,1 and
+// true poses. A pixel has changed if one of 3 x 3 vertical rays meets the highest surfaces of both
+// surveys at heights that differ by more than 0.1 mm. Prints:
 //   - the volumes between both true surfaces at the pixels that are compared [m^3]: came, gone; and
 //     at the other pixels of the map;
-//   - the areas [m^2]: compared; of them changed; of these not found; falsely found; of the latter
-//     farther than two pixels from all change;
-//   - the robust standard deviation of the differences where nothing changed [mm].
-// PICTURE: a picture of the difference, grey at 0, and 50 mm white, beside the pixels that were
-// falsely found (red), not found (yellow) and rightly found (green).
+//   - the areas [m^2]: compared; of them changed; falsely found.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <iostream>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 #include <string>
-#include <vector>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "check_program.h"
 #include "compare/changes.h"
-#include "compare/height_map.h"
 #include "map/geotiff.h"
 #include "simulate/presets.h"
 #include "simulate/ray_scene.h"
@@ -87,83 +81,32 @@ void print_volumes(const cv::Mat1b& classes, const Truth& truth) {
 }
 
 void print_areas(const cv::Mat1b& classes, const Truth& truth, double pixel_area) {
-  constexpr int kBeside = 5;  // [px]: up to two pixels beside
-  cv::Mat1b near;
-  cv::dilate(truth.changed, near, cv::Mat1b::ones(kBeside, kBeside));
-  int compared = 0, changed = 0, missed = 0, wrong = 0, apart = 0;
+  int compared = 0, changed = 0, wrong = 0;
   for (int y = 0; y < classes.rows; ++y)
     for (int x = 0; x < classes.cols; ++x) {
       if (classes(y, x) == compare::kNotCompared) continue;
       const bool found = classes(y, x) != compare::kUnchanged, real = truth.changed(y, x) > 0;
       ++compared;
       changed += real ? 1 : 0;
-      missed += real && !found ? 1 : 0;
       wrong += found && !real ? 1 : 0;
-      apart += found && near(y, x) == 0 ? 1 : 0;
     }
-  std::cout << fmt::format(
-      "areas: compared {:.4f} changed {:.4f} missed {:.4f} false {:.4f} apart {:.4f}\n",
-      compared * pixel_area, changed * pixel_area, missed * pixel_area, wrong * pixel_area,
-      apart * pixel_area);
+  std::cout << fmt::format("areas: compared {:.4f} changed {:.4f} false {:.4f}\n",
+                           compared * pixel_area, changed * pixel_area, wrong * pixel_area);
 }
 
-void print_noise(const cv::Mat1f& difference, const cv::Mat1b& classes, const Truth& truth) {
-  std::vector<double> values;
-  for (int y = 0; y < classes.rows; ++y)
-    for (int x = 0; x < classes.cols; ++x)
-      if (classes(y, x) != compare::kNotCompared && truth.changed(y, x) == 0)
-        values.push_back(1e3 * static_cast<double>(difference(y, x)));
-  std::cout << fmt::format("noise: {:.3f} mm\n", compare::robust_deviation(std::move(values)));
-}
-
-void write_picture(const std::string& file, const cv::Mat1f& difference, const cv::Mat1b& classes,
-                   const Truth& truth) {
-  cv::Mat1b grey;
-  difference.convertTo(grey, CV_8U, 127 / 0.05, 128);
-  cv::Mat3b left, right;
-  cv::cvtColor(grey, left, cv::COLOR_GRAY2BGR);
-  right = 0.5 * left;
-  for (int y = 0; y < classes.rows; ++y)
-    for (int x = 0; x < classes.cols; ++x) {
-      const bool found = classes(y, x) == compare::kGone || classes(y, x) == compare::kCame;
-      const bool real = truth.changed(y, x) > 0;
-      if (classes(y, x) == compare::kNotCompared)
-        left(y, x) = right(y, x) = {255, 160, 160};
-      else if (found || real)
-        right(y, x) = found && real ? cv::Vec3b(0, 160, 0)
-                      : found       ? cv::Vec3b(0, 0, 255)
-                                    : cv::Vec3b(0, 255, 255);
-    }
-  cv::Mat3b both;
-  cv::vconcat(left, right, both);
-  cv::resize(both, both, {}, 3, 3, cv::INTER_NEAREST);
-  if (!cv::imwrite(file, both)) fail("cannot write {}", file);
-}
-
-int run(int argc, char** argv) {
+int run(int, char** argv) {
   const std::string change = argv[2];
-  const map::StoredMap difference = map::read_map(change + ".change.difference.tif");
-  const cv::Mat1b classes = map::read_map(change + ".change.significant.tif").pixels;
-  const map::MapGrid& grid = difference.grid;
+  const map::StoredMap significant = map::read_map(change + ".change.significant.tif");
+  const cv::Mat1b classes = significant.pixels;
+  const map::MapGrid& grid = significant.grid;
   const Truth truth = true_change(argv[1], grid);
   print_volumes(classes, truth);
   print_areas(classes, truth, grid.pixel * grid.pixel);
-  print_noise(difference.pixels, classes, truth);
-  if (argc > 3) write_picture(argv[3], difference.pixels, classes, truth);
   return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3 && argc != 4) {
-    std::cerr << "usage: change_check SEED CHANGE [PICTURE]\n";
-    return 1;
-  }
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "change_check: " << error.what() << "\n";
-    return 1;
-  }
+  return axial::check_program(argc, argv, 2, 2, "change_check SEED CHANGE", run);
 }

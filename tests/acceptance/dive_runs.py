@@ -10,17 +10,25 @@ import json
 import math
 import pathlib
 import re
+import resource
 import shutil
 import subprocess
 import sys
+import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from support import runs  # noqa: E402
+from support.colmap_text import baseline  # noqa: E402
 from support.runs import BIN, PROGRAMS, ROOT, measured  # noqa: E402
-from refined import centre, images_of  # noqa: E402
 
 SMALL = ("--medium", "water", "--truth", 0, "--width", 480, "--height", 360, "--coarseness", 2, "--samples", 2)
 TIME_LIMIT = 3600  # of a run [s]
+
+
+def cpu_seconds():
+    """CPU time of this process and of its children that have ended."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime + time.process_time()
 
 
 def dive(base, preset, seed, *options, views=10):
@@ -42,15 +50,10 @@ class Brought:
 
 def as_measured(data, folder):
     """Photographs, lens, housing and one length as they are in truth."""
-    centres = {name: centre(pose) for name, pose in images_of(data / "sparse").items()}
-    first = min(centres)
-    far = max(centres, key=lambda name: math.dist(centres[first], centres[name]))
-    length = math.dist(centres[first], centres[far])
     folder.mkdir(parents=True, exist_ok=True)
     for source, name in ((data / "sparse" / "cameras.txt", "lens.txt"), (data / "housing.json", "housing.json")):
         shutil.copyfile(source, folder / name)
-    return Brought(data / "water", folder / "lens.txt", folder / "housing.json",
-                   f"images:{first},{far},{length:.9f}")
+    return Brought(data / "water", folder / "lens.txt", folder / "housing.json", baseline(data / "sparse"))
 
 
 def change_focal_length(brought, factor):

@@ -19,7 +19,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import dive_runs  # noqa: E402
 from dive_runs import as_measured, change_focal_length, change_photographs, change_port, dive  # noqa: E402
 from points import BASE, point  # noqa: E402
-from refined import centre, images_of  # noqa: E402
+from support.colmap_text import centres  # noqa: E402
 
 FRESH_SEEDS = (1101, 1102, 1103, 1104, 1105)  # not used while building
 TOLERATED = 1.15        # times the error with the right numbers
@@ -80,8 +80,8 @@ def write_positions(brought, folder, data, sigma, wrong=()):
     """`wrong`: the displacement [m] of one position."""
     noise = random.Random(1)
     lines = []
-    for number, (name, pose) in enumerate(sorted(images_of(data / "sparse").items())):
-        place = [value + noise.gauss(0, sigma) for value in centre(pose)]
+    for number, (name, true) in enumerate(sorted(centres(data / "sparse").items())):
+        place = [value + noise.gauss(0, sigma) for value in true]
         if wrong and number == 4:
             place = [value + shift for value, shift in zip(place, wrong)]
         lines.append(f"{name} {place[0]:.6f} {place[1]:.6f} {place[2]:.6f}\n")

@@ -24,6 +24,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/parse_number.h"
+#include "check_program.h"
 #include "io/bytes/json.h"
 #include "io/cameras/housing.h"
 #include "io/images/image.h"
@@ -238,9 +239,9 @@ void write_camera(const std::filesystem::path& folder, const Camera& camera, dou
   io::write_housing(folder / "start.json", io::housing_with(io::to_housing_port(start)));
 }
 
-int run(int argc, char** argv) {
-  const auto seed = argc == 3 ? parse_number<unsigned>(argv[1]) : std::nullopt;
-  if (!seed) fail("usage: drawn_boards SEED FOLDER");
+int run(int, char** argv) {
+  const auto seed = parse_number<unsigned>(argv[1]);
+  if (!seed) fail("SEED {}: must be a whole number", argv[1]);
   const std::filesystem::path folder = argv[2];
   std::filesystem::create_directories(folder / "photos");
   Random random(*seed);
@@ -266,10 +267,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "drawn_boards: " << error.what() << "\n";
-    return 1;
-  }
+  return axial::check_program(argc, argv, 2, 2, "drawn_boards SEED FOLDER", run);
 }

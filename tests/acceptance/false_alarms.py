@@ -5,7 +5,7 @@ import re
 
 from points import BASE, point
 from support import runs
-from support.runs import BIN, PROGRAMS, measured
+from support.runs import PROGRAMS, measured
 
 SMALL = ("--coarseness", 4, "--views", 6, "--width", 320, "--height", 240, "--samples", 1, "--truth", 0)
 PRESETS = ("closeup", "reef", "sand", "outcrop", "transect", "thicket", "survey", "amphora")

@@ -19,6 +19,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
+#include "base/order_statistics.h"
+#include "check_program.h"
 #include "depth/matcher.h"
 #include "io/cameras/housing.h"
 #include "io/cameras/lenses.h"
@@ -84,14 +86,7 @@ bool in_front(const View& view, const ProjectedPoint& projected) {
   return projected.inside && projected.depth < 1.01f * view.nearest(projected.y, projected.x);
 }
 
-float median(std::vector<float>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-int run(char** argv) {
+int run(int, char** argv) {
   const Scene scene = io::read_mvs(argv[1], std::filesystem::path(argv[1]).parent_path());
   for (const auto& beside : {io::housing_beside(argv[1]), io::lenses_beside(argv[1])})
     if (std::filesystem::exists(beside)) fail("{}: expected a scene of pinholes", beside.string());
@@ -132,21 +127,13 @@ int run(char** argv) {
   const auto seen = static_cast<double>(angles.size());
   std::cout << fmt::format("seen {} agree {} fraction {:.4f} angle {:.0f}\n", angles.size(), agree,
                            angles.empty() ? 0.0 : static_cast<double>(agree) / seen,
-                           median(angles));
+                           upper_median(angles));
   return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 6) {
-    std::cerr << "usage: held_out_check SCENE.mvs CLOUD.ply IMAGE_A IMAGE_B RESOLUTION_LEVEL\n";
-    return 1;
-  }
-  try {
-    return run(argv);
-  } catch (const std::exception& error) {
-    std::cerr << "held_out_check: " << error.what() << "\n";
-    return 1;
-  }
+  return axial::check_program(
+      argc, argv, 5, 5, "held_out_check SCENE.mvs CLOUD.ply IMAGE_A IMAGE_B RESOLUTION_LEVEL", run);
 }

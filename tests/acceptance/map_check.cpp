@@ -6,8 +6,7 @@
 // The scene was made by SimulateUnderwater --preset PRESET --seed SEED --coarseness COARSENESS, and
 // the maps MAP.dem.tif, MAP.ortho.tif and MAP.sigma.tif by MapSurface with true poses and --up
 // 0,0,1 from the folder PHOTOGRAPHS, taken under water through a flat port. Prints:
-//   - the distances of the points of the height map to the true surface [mm]: RMS and median;
-//   - the differences of heights from the highest point of the true surface [mm]: RMS and median;
+//   - the distances of the points of the height map to the true surface [mm]: RMS;
 //   - the expected errors of these heights: the median of true error / expected error, times 1.48,
 //     so that it is 1 for normally distributed errors as large as expected; then, for each fifth of
 //     the pixels in the order of the expected error, the median expected error and 1.48 times the
@@ -15,7 +14,7 @@
 //   - the PSNR of the orthomosaic against the true one [dB], which has the colours of the mean of
 //     3 x 3 vertical rays in each pixel;
 //   - the displacement of the orthomosaic: tiles of 64 x 64 pixels are matched with the true one by
-//     phase correlation [px]: RMS of x and y together, mean x, mean y, and the number of tiles;
+//     phase correlation [px]: RMS of x and y together, and the number of tiles;
 //   - the ground that no photograph sees, that one photograph sees, and the pixels without colour,
 //     as shares of the ground inside the frames of two photographs; then where they differ;
 //   - the edges at depth steps (map_edges.h) of the orthomosaic, and of three maps that show what
@@ -33,6 +32,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/order_statistics.h"
+#include "check_program.h"
 #include "geometry/surface.h"
 #include "map/geotiff.h"
 #include "map_edges.h"
@@ -44,41 +45,26 @@ namespace {
 using namespace axial;
 using namespace map_check;
 
-struct Spread {
-  double rms = 0, median = 0;
-};
-
-Spread spread_of(std::vector<float> errors) {
+double rms_of(const std::vector<float>& errors) {
   if (errors.empty()) fail("no pixel has a height");
   double squares = 0;
-  for (float& error : errors) {
-    error = std::abs(error);
-    squares += static_cast<double>(error) * error;
-  }
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::nth_element(errors.begin(), middle, errors.end());
-  return {std::sqrt(squares / static_cast<double>(errors.size())), *middle};
+  for (const float error : errors) squares += static_cast<double>(error) * error;
+  return std::sqrt(squares / static_cast<double>(errors.size()));
 }
 
 void print_heights(const map::StoredMap& dem, const TrueMap& truth,
                    const simulate::TriangleMesh& mesh) {
-  std::vector<float> differences;
   std::vector<Eigen::Vector3f> points;
   for (int y = 0; y < dem.pixels.rows; ++y)
     for (int x = 0; x < dem.pixels.cols; ++x) {
       const float height = dem.pixels.at<float>(y, x);
       if (height == map::kNoHeight || std::isnan(truth.heights(y, x))) continue;
-      differences.push_back(height - truth.heights(y, x));
       points.emplace_back(static_cast<float>(dem.grid.left + (x + 0.5) * dem.grid.pixel),
                           static_cast<float>(dem.grid.top - (y + 0.5) * dem.grid.pixel), height);
     }
   const geometry::Surface surface({mesh.vertices, {}, mesh.faces});
-  const Spread near = spread_of(geometry::distances_to(surface, points));
-  const Spread vertical = spread_of(differences);
-  std::cout << fmt::format("distances: RMS {:.3f} median {:.3f} mm\n", 1000 * near.rms,
-                           1000 * near.median);
-  std::cout << fmt::format("heights: RMS {:.3f} median {:.3f} mm\n", 1000 * vertical.rms,
-                           1000 * vertical.median);
+  std::cout << fmt::format("distances: RMS {:.3f} mm\n",
+                           1000 * rms_of(geometry::distances_to(surface, points)));
 }
 
 void print_psnr(const cv::Mat4b& ortho, const TrueMap& truth) {
@@ -108,7 +94,7 @@ void print_displacement(const cv::Mat4b& ortho, const TrueMap& truth) {
   cv::cvtColor(truth.colors, two, cv::COLOR_RGB2GRAY);
   one.convertTo(grey, CV_32F), two.convertTo(true_grey, CV_32F);
   cv::createHanningWindow(window, {kTile, kTile}, CV_32F);
-  double squares = 0, sum_x = 0, sum_y = 0;
+  double squares = 0;
   int tiles = 0;
   for (int y = 0; y + kTile <= ortho.rows; y += kTile)
     for (int x = 0; x + kTile <= ortho.cols; x += kTile) {
@@ -116,13 +102,12 @@ void print_displacement(const cv::Mat4b& ortho, const TrueMap& truth) {
       if (cv::countNonZero(alpha(at)) < at.area() || cv::countNonZero(truth.known(at)) < at.area())
         continue;
       const cv::Point2d shift = cv::phaseCorrelate(true_grey(at), grey(at), window);
-      squares += shift.dot(shift), sum_x += shift.x, sum_y += shift.y;
+      squares += shift.dot(shift);
       ++tiles;
     }
   if (tiles == 0) fail("no tile of {} pixels is complete", kTile);
-  const double n = tiles;
-  std::cout << fmt::format("displacement: RMS {:.3f} mean {:.3f} {:.3f} px of {} tiles\n",
-                           std::sqrt(squares / n), sum_x / n, sum_y / n, tiles);
+  std::cout << fmt::format("displacement: RMS {:.3f} px of {} tiles\n", std::sqrt(squares / tiles),
+                           tiles);
 }
 
 // Errors of heights by their expectation: fifths of the pixels with growing expected error.
@@ -142,9 +127,7 @@ void print_expected_errors(const map::StoredMap& dem, const map::StoredMap& sigm
   if (errors.empty()) fail("no pixel has an expected error");
   std::ranges::stable_sort(errors, {}, &Error::expected);
   const auto median = [](std::vector<float> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return static_cast<double>(*middle);
+    return static_cast<double>(upper_median(std::move(values)));
   };
   std::vector<float> ratios;
   for (const Error& error : errors) ratios.push_back(error.seen / error.expected);
@@ -186,8 +169,8 @@ void print_edges(const char* name, const EdgeCounts& counts) {
   const auto share = [&](std::size_t part) {
     return 100 * static_cast<double>(part) / static_cast<double>(counts.lines);
   };
-  std::cout << fmt::format("edges {}: doubled {:.2f} missing {:.2f} % of {} lines\n", name,
-                           share(counts.doubled), share(counts.missing), counts.lines);
+  std::cout << fmt::format("edges {}: doubled {:.2f} % of {} lines\n", name, share(counts.doubled),
+                           counts.lines);
 }
 
 void print_all_edges(const cv::Mat4b& ortho, const TrueMap& truth, const NearestMaps& nearest) {
@@ -207,7 +190,7 @@ void print_all_edges(const cv::Mat4b& ortho, const TrueMap& truth, const Nearest
   print("of a map without visibility", nearest.naive);
 }
 
-int run(char** argv) {
+int run(int, char** argv) {
   simulate::PresetOptions options;
   options.name = argv[1];
   options.seed = static_cast<std::uint32_t>(std::stoul(argv[2]));
@@ -231,14 +214,6 @@ int run(char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 6) {
-    std::cerr << "usage: map_check PRESET SEED COARSENESS MAP PHOTOGRAPHS\n";
-    return 1;
-  }
-  try {
-    return run(argv);
-  } catch (const std::exception& error) {
-    std::cerr << "map_check: " << error.what() << "\n";
-    return 1;
-  }
+  return axial::check_program(argc, argv, 5, 5, "map_check PRESET SEED COARSENESS MAP PHOTOGRAPHS",
+                              run);
 }

@@ -30,8 +30,6 @@ struct EdgeCounts {
   // the true map has none within 2 px. Edges of the map count above 0.6 times its largest one, and
   // true edges above a fifth of the largest one.
   std::size_t doubled = 0;
-  // Lines on which the map has no edge within 2 px of the largest true edge: it is displaced.
-  std::size_t missing = 0;
 };
 EdgeCounts count_edges(const cv::Mat3b& map, const cv::Mat3b& true_map,
                        const std::vector<Crossing>& crossings);

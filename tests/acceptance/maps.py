@@ -4,7 +4,7 @@
 import re
 
 from meshes import judged
-from points import BASE, densified, point
+from points import BASE, meshed, point
 from support import runs
 from support.runs import BIN, PROGRAMS, measured
 
@@ -24,11 +24,7 @@ def reef(work, seed):
     truth = runs.simulated(f"reef-{seed}", BASE, "--preset", "reef", "--views", 10, "--seed", seed,
                            tolerance=runs.TOLERANCES["reef"])
     folder = work / f"reef-{seed}-water-maps"
-    densified(folder, truth.data / "sparse", truth.data / "water", truth.housing("water"),
-              "--resolution-level", 1)
-    if not (folder / "mesh.ply").exists():
-        measured(folder / "mesh.log", *PROGRAMS.reconstruct_mesh(
-            folder / "scene_dense.mvs", folder / "mesh.ply", "--refractive"))
+    meshed(folder, truth, "water", 1)
     return folder, truth
 
 
@@ -55,7 +51,7 @@ def judged_map(folder, truth, seed, size, cost):
     displacement = numbers_of(said, "displacement: ")[0]
     ratio, *fifths = numbers_of(said, "expected errors: ")
     hidden, once, is_open, painted, painted_once, seen_open, _ = numbers_of(said, "ground: ")
-    doubled, _, lines = numbers_of(said, "edges of the orthomosaic: ")
+    doubled, lines = numbers_of(said, "edges of the orthomosaic: ")
     copy, visible, naive = (numbers_of(said, f"edges of {name}: ")[0] for name in (
         "the orthomosaic and its copy, 5 px apart", "a map with true heights and visibility",
         "a map without visibility"))

@@ -5,7 +5,7 @@ scenes in git, to refined and textured meshes."""
 import json
 import statistics
 
-from points import BASE, densified, point_of_each_scene
+from points import BASE, densified, kept, point_of_each_scene
 from support import runs
 from support.runs import PROGRAMS, measured
 
@@ -55,12 +55,13 @@ SOUND = ("non_manifold_edges", "non_manifold_vertices", "inconsistent_edges", "s
 
 def result(work, scene, seed, medium):
     """The costs and the quality of the meshes of one scene in one medium."""
+    folder = work / f"{scene}-{seed}-{medium}-meshes"
+    return kept(folder / "meshes.json", lambda: measured_meshes(folder, scene, seed, medium))
+
+
+def measured_meshes(folder, scene, seed, medium):
     truth = runs.simulated(f"{scene}-{seed}", BASE, "--preset", scene, "--views", VIEWS[scene],
                            "--seed", seed, tolerance=runs.TOLERANCES[scene])
-    folder = work / f"{scene}-{seed}-{medium}-meshes"
-    kept = folder / "meshes.json"
-    if kept.exists():
-        return json.loads(kept.read_text())
     found = {"cost": made(folder, truth, medium)}
     reports = {name: judged(folder, name, truth, medium) for name in ("mesh", "refined")}
     for name, report in reports.items():
@@ -72,7 +73,6 @@ def result(work, scene, seed, medium):
     render = judged(folder, "textured", truth, medium, "--render", LEFT_OUT, "--photographs",
                     truth.data / medium, "--render-folder", folder / "rendered")["render"]
     found["psnr"], found["grey_levels"] = render["psnr"], render["mean_difference"]
-    kept.write_text(json.dumps(found))
     return found
 
 

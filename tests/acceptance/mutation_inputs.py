@@ -4,16 +4,15 @@ the programs make of it in sequence."""
 
 import dataclasses
 import json
-import math
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "apps"))
-from programs import grey_png  # noqa: E402
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1] / folder) for folder in (".", "apps")]
 from small_clip import moving_clip  # noqa: E402
+from support import colmap_text  # noqa: E402
 
 THREADS = ("--max-threads", "1")
 NOT_CHANGED = {"help", "version", "log-file"}
@@ -40,7 +39,7 @@ PHOTOGRAPHS = tuple(f"sim/water/000{i}.jpg" for i in range(4))
 SCENE = ("scene.mvs", "scene.housing.json", "scene.lenses.json")
 DENSE = ("scene_dense.mvs", "scene_dense.housing.json", "scene_dense.lenses.json")
 MAPS = tuple(f"depth000{i}.dmap{end}" for i in range(4) for end in ("", ".json"))
-BOARDS = tuple(f"board/{i}.png" for i in range(6))
+BOARDS = tuple(f"board/photos/{i:02}.png" for i in range(0, 12, 2))  # the whole board
 
 PROGRAMS = {program.name: program for program in (
     Program("SimulateUnderwater",
@@ -88,10 +87,10 @@ PROGRAMS = {program.name: program for program in (
                             "--scale-from", "positions:positions.csv", "-o", "out"),
             ("few/cameras.txt", "few/images.txt", "few/points3D.txt", "sim/housing.json",
              "positions.csv", "lens.yaml")),
-    Program("CalibrateHousing", ("-i", "board", "--lens", "board.cameras.txt", "--housing",
-                                 "board.housing.json", "--board", "checkerboard:6x5:0.03", "--refine",
+    Program("CalibrateHousing", ("-i", "board/photos", "--lens", "board/lens.txt", "--housing",
+                                 "board/start.json", "--board", "checkerboard:8x7:0.03", "--refine",
                                  "distance", "--distance-sigma", "0.0005", "-o", "out.json"),
-            (*BOARDS[:2], "board.cameras.txt", "board.housing.json"), BOARDS,
+            (*BOARDS[:2], "board/lens.txt", "board/start.json"), BOARDS,
             may_name=("board",)),
     Program("ExtractFrames", ("-i", "clip.avi", "-o", "out", "--json", "out.json"), ("clip.avi",)),
     Program("ReproducePaper", ("figure3", "--quick", "-o", "paper"),
@@ -100,89 +99,9 @@ PROGRAMS = {program.name: program for program in (
 )}
 
 
-N_WATER, PORT = 1.333, 0.06  # index of the water; distance of the port, with glass of the air's index
-
-
-def board_picture(turn, tilt, centre, size=(320, 240), focal=280):
-    """A checkerboard of 7 x 6 squares, seen through the port. `centre`: of the board [m]."""
-    c, s, ct, st = math.cos(turn), math.sin(turn), math.cos(tilt), math.sin(tilt)
-    rows = []
-    for v in range(size[1]):
-        row = bytearray()
-        for u in range(size[0]):
-            x, y = (u + 0.5 - size[0] / 2) / focal, (v + 0.5 - size[1] / 2) / focal
-            radius = math.hypot(x, y)
-            bent = math.tan(math.asin(math.sin(math.atan(radius)) / N_WATER)) / radius
-            # The point PORT (x, y, 1) + t (bent x, bent y, 1) on the board, whose normal is
-            # (0, -st, ct).
-            dx, dy, dz = PORT * x - centre[0], PORT * y - centre[1], PORT - centre[2]
-            t = (st * dy - ct * dz) / (ct - st * bent * y)
-            px, py, pz = dx + t * bent * x, dy + t * bent * y, dz + t
-            a, b = px * c + (py * ct + pz * st) * s, -px * s + (py * ct + pz * st) * c
-            i, j = math.floor(a / 0.03 + 3.5), math.floor(b / 0.03 + 3)
-            inside = 0 <= i < 7 and 0 <= j < 6
-            row.append(20 if inside and (i + j) % 2 == 0 else 230)
-        rows.append(bytes(row))
-    return grey_png(rows)
-
-
-def write_board(folder):
-    (folder / "board").mkdir()
-    for i, name in enumerate(BOARDS):
-        side, low = 0.07 * (i % 3 - 1), 0.05 * (i % 2) - 0.025
-        (folder / name).write_bytes(board_picture(0.3 * i, 0.3 * (i % 3 - 1),
-                                                  (side, low, 0.3 + 0.04 * i)))
-    (folder / "board.cameras.txt").write_text("1 PINHOLE 320 240 280 280 160 120\n")
-    (folder / "board.housing.json").write_text(json.dumps(
-        {"version": 1, "default": "main", "ports": {"main": {
-            "type": "flat", "normal": [0, 0, 1], "distance_m": PORT, "thickness_m": 0.001,
-            "n_air": 1.0, "n_glass": 1.001, "n_water": N_WATER}}}))
-
-
-def centres(images):
-    """The camera centres of COLMAP's images.txt, by name."""
-    found = {}
-    for line in images.splitlines():
-        words = line.split()
-        if line.startswith("#") or len(words) != 10 or not words[9].endswith(".jpg"):
-            continue
-        w, x, y, z, *t = map(float, words[1:8])
-        rows = ((1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-                (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-                (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)))
-        found[words[9]] = [-sum(rows[k][i] * t[k] for k in range(3)) for i in range(3)]
-    return found
-
-
-def write_few(folder, every=8):
+def write_few(folder):
     """A part of the model's points, so that RefinePoses takes little time."""
-    (folder / "few").mkdir()
-    shutil.copy(folder / MODEL[0], folder / "few")
-    kept, lines = set(), []
-    for line in (folder / MODEL[2]).read_text().splitlines():
-        if not line.startswith("#") and int(line.split()[0]) % every == 0:
-            kept.add(line.split()[0])
-            words = line.split()
-            lines.append(" ".join(words))
-    poses = []
-    places = {}
-    text = [line for line in (folder / MODEL[1]).read_text().splitlines()
-            if not line.startswith("#")]
-    for pose, points in zip(text[::2], text[1::2]):
-        words = points.split()
-        triples = [(i // 3, words[i:i + 3]) for i in range(0, len(words), 3)]
-        triples = [(old, triple) for old, triple in triples if triple[2] in kept]
-        image = pose.split()[0]
-        places.update({(image, str(old)): str(new) for new, (old, _) in enumerate(triples)})
-        poses += [pose, " ".join(word for _, triple in triples for word in triple)]
-    for k, line in enumerate(lines):
-        words = line.split()
-        track = words[8:]
-        words[8:] = [word for i in range(0, len(track), 2)
-                     for word in (track[i], places[track[i], track[i + 1]])]
-        lines[k] = " ".join(words)
-    (folder / "few" / "images.txt").write_text("\n".join(poses) + "\n")
-    (folder / "few" / "points3D.txt").write_text("\n".join(lines) + "\n")
+    colmap_text.copy(folder / "sim" / "sparse", folder / "few", lambda number: number % 8 == 0)
     words = (folder / MODEL[0]).read_text().splitlines()[-1].split()
     (folder / "lens.yaml").write_text(
         f"model: {words[1]}\nwidth: {words[2]}\nheight: {words[3]}\n"
@@ -193,7 +112,7 @@ def write_other(folder):
     (folder / "other").mkdir()
     for name in MODEL:
         shutil.copy(folder / name, folder / "other")
-    known = centres((folder / MODEL[1]).read_text())
+    known = colmap_text.centres(folder / "sim" / "sparse")
     (folder / "positions.csv").write_text("#Label,X,Y,Z,Accuracy (m)\n" + "".join(
         f"{name},{','.join(map(repr, place))},0.01\n" for name, place in known.items()))
 
@@ -214,7 +133,7 @@ def make_all(binaries, folder):
     run("TextureMesh", "-i", "scene_dense.mvs", "-m", "mesh.ply", "-o", "textured.ply")
     run("MapSurface", *PROGRAMS["MapSurface"].options[:5], "map", "--ground-sample-distance", "0.02")
     (folder / "clip.avi").write_bytes(moving_clip())
-    write_board(folder)
+    subprocess.run([binaries / "drawn_boards", "1", folder / "board"], check=True, stdout=subprocess.DEVNULL)
     write_few(folder)
     write_other(folder)
     (folder / "SimulateUnderwater.cfg").write_text("# A comment\nseed = 2\nrelief = 1.5\n")

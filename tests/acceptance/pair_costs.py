@@ -2,25 +2,17 @@
 """What the pairs of a survey cost: --matcher cascade beside --matcher exhaustive, up to COLMAP's poses."""
 
 import argparse
-import resource
 import shutil
-import time
 
 from axial_pipeline import colmap, reconstruct_steps
 from axial_pipeline.steps import run_all
-from dive_runs import SMALL, as_measured
+from dive_runs import SMALL, as_measured, cpu_seconds
 from points import BASE, point
 from support import runs
 from support.runs import BIN
 
 VIEWS, SEED = 60, 71
 SHARE = 1 / 3  # of the CPU time of all pairs, at most
-
-
-def cpu_seconds():
-    """CPU time of this process and of its children that have ended."""
-    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return usage.ru_utime + usage.ru_stime + time.process_time()
 
 
 def options(brought, matcher):

@@ -1,29 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points on real photographs: the fountain, and a scene of another program."""
+"""Points on the real photographs of the fountain."""
 
 import re
-import sys
 
 from axial_pipeline.colmap import registered
 from axial_pipeline.colmap_model import Calibration, colmap_model
-from benchmarks import end_to_end
 from points import BASE, densified, point
-from support import runs
-from support.runs import BIN, ROOT, measured
+from support import colmap_text, runs
+from support.runs import BIN, measured
 
 
 def fountain(part):
     return runs.shared("fountain-P11", part)
-
-
-@point("at least 615,564 points (OpenMVS), CPU-seconds, peak memory")
-def fountain_points(work):
-    cost = densified(work / "fountain", fountain("sparse"), fountain("images"), None,
-                     "--resolution-level", 2)
-    seen = (f"{cost['points']:,} points, {cost['cpu']:.0f} CPU-s "
-            f"({cost['cpu'] / cost['megapixels']:.1f} per megapixel), "
-            f"{cost['memory'] / 2**20:.0f} MiB")
-    return seen, cost["points"] >= 615564
 
 
 # View selection pairs no two views beyond this angle. There the check is reported but not judged.
@@ -42,10 +30,9 @@ def photo_check(work, cloud, a, b):
 
 def held_out_pair(work, a, b):
     folder = work / f"fountain-without-{a[:4]}-{b[:4]}"
-    measured(work / "hold-out.log", sys.executable, ROOT / "tests/acceptance/hold_out.py",
-             fountain("sparse"), work / f"model-without-{a[:4]}-{b[:4]}", a, b)
-    densified(folder, work / f"model-without-{a[:4]}-{b[:4]}", fountain("images"), None,
-              "--resolution-level", 2)
+    model = work / f"model-without-{a[:4]}-{b[:4]}"
+    colmap_text.copy(fountain("sparse"), model, without=(a, b))
+    densified(folder, model, fountain("images"), None, "--resolution-level", 2)
     share, count, angle = photo_check(work, folder, a, b)
     with_all, _, _ = photo_check(work, work / "fountain", a, b)
     seen = (f"{a[:4]} and {b[:4]}, {angle} degrees apart: {share:.1%} of {count:,} "
@@ -71,9 +58,3 @@ def fountain_colmap(work):
     colmap_model(fountain("images"), model, lens)
     count = registered(model / "model")
     return f"{count} of 11", count == 11
-
-
-@point("report (OpenMVS: 183,051 points)")
-def scene_v6(work):
-    cost = end_to_end.scene_v6(work)["DensifyPointCloud"]()
-    return f"{cost['points']:,} points, {cost['cpu']:.1f} CPU-s", None

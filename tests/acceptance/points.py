@@ -8,7 +8,7 @@ import shutil
 from axial_pipeline import truth as pipeline_truth
 from axial_pipeline.colmap_model import colmap_model
 from support import runs
-from support.runs import PROGRAMS, ROOT
+from support.runs import PROGRAMS, ROOT, measured
 
 BASE = ROOT / "build" / "acceptance"
 
@@ -37,17 +37,35 @@ def truth_of(scene):
     return runs.synthetic(scene, BASE)
 
 
+def kept(file, make):
+    """The JSON value in `file`. If there is none yet, that of make(), which is kept there."""
+    if not file.exists():
+        value = make()
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(json.dumps(value))
+    return json.loads(file.read_text())
+
+
 def densified(folder, model, images, housing, *options):
     """Runs InterfaceCOLMAP and DensifyPointCloud. Returns the cost of DensifyPointCloud. If
     `folder` holds a cost already, nothing is run."""
-    cost = folder / "cost.json"
-    if cost.exists():
-        return json.loads(cost.read_text())
-    shutil.rmtree(folder, ignore_errors=True)
-    runs.import_scene(folder, model, images, housing)
-    result = runs.densify(folder, *(["--refractive"] if housing else []), *options)
-    cost.write_text(json.dumps(result))
-    return result
+    def run():
+        shutil.rmtree(folder, ignore_errors=True)
+        runs.import_scene(folder, model, images, housing)
+        return runs.densify(folder, *(["--refractive"] if housing else []), *options)
+    return kept(folder / "cost.json", run)
+
+
+def meshed(folder, truth, medium, level, *options):
+    """densified() on true poses, and ReconstructMesh. Returns the options of a port, and the folder's
+    scene and mesh. If `folder` holds a mesh already, nothing is run."""
+    housing = truth.housing(medium)
+    refractive = ["--refractive"] if housing else []
+    densified(folder, truth.data / "sparse", truth.data / medium, housing, "--resolution-level", level)
+    scene, mesh = folder / "scene_dense.mvs", folder / "mesh.ply"
+    if not mesh.exists():
+        measured(folder / "mesh.log", *PROGRAMS.reconstruct_mesh(scene, mesh, *refractive, *options))
+    return refractive, scene, mesh
 
 
 def poses(scene, medium, number):

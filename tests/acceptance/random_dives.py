@@ -8,7 +8,6 @@ measures the dives with these numbers and prints a table. The acceptance point `
 
 import argparse
 import dataclasses
-import json
 import pathlib
 import random
 import sys
@@ -17,7 +16,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import dive_runs  # noqa: E402
 from dive_runs import as_measured, change_focal_length, change_port, dive  # noqa: E402
 from dives import baseline_of  # noqa: E402
-from points import BASE, point  # noqa: E402
+from points import BASE, kept, point  # noqa: E402
 
 COUNT = 200
 PRESETS = ("reef", "closeup", "outcrop", "survey", "transect", "amphora")
@@ -105,6 +104,11 @@ def line_about(number, one, outcome, right, fault):
             f"{'; '.join(words)} | {fault} |")
 
 
+def line_of(number, work):
+    *measured, fault = measure(number, BASE, work)
+    return [line_about(number, *measured, fault), bool(fault)]
+
+
 @point(f"{COUNT} random dives (lens, port, errors of the files, haze, trajectory): never a wrong model with exit code "
        "0 and no warning")
 def random_dives(work):
@@ -112,11 +116,7 @@ def random_dives(work):
     work.mkdir(parents=True, exist_ok=True)
     lines = [HEAD]
     for number in range(1, COUNT + 1):
-        kept = work / f"{number}.line.json"
-        if not kept.exists():
-            one, outcome, right, fault = measure(number, BASE, work)
-            kept.write_text(json.dumps([line_about(number, one, outcome, right, fault), bool(fault)]))
-        line, bad = json.loads(kept.read_text())
+        line, bad = kept(work / f"{number}.line.json", lambda number=number: line_of(number, work))
         lines.append(line)
         faults += bad
         (work / "table.md").write_text("\n".join(lines) + "\n")

@@ -3,13 +3,14 @@
 the truth, and how they affect the dense cloud."""
 
 import json
-import math
 import pathlib
 import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from support import runs  # noqa: E402
+from points import densified  # noqa: E402
+from support.colmap_text import baseline, images_of, records  # noqa: E402
 from support.runs import PROGRAMS, measured  # noqa: E402
 from axial_pipeline.colmap_model import colmap_model  # noqa: E402
 from axial_pipeline.truth import self_calibrated_lens  # noqa: E402
@@ -45,31 +46,6 @@ def truth_of(scene, base):
                           *options, tolerance=0.005)
 
 
-def images_of(model):
-    """The poses of a text model by image name, each as seven numbers (QW .. TZ) in text form."""
-    lines = [line for line in (model / "images.txt").read_text().split("\n")
-             if not line.startswith("#")]
-    return {line.split()[9]: line.split()[1:8] for line in lines[0::2] if line}
-
-
-def centre(pose):
-    """The camera centre -R^T t of a pose. The rows are those of R^T."""
-    w, x, y, z, *t = map(float, pose)
-    rows = ((1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
-            (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
-            (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)))
-    return [-sum(a * b for a, b in zip(row, t)) for row in rows]
-
-
-def baseline(truth):
-    """The argument of --scale-from: the true distance between the first image and the image
-    farthest from it."""
-    centres = {name: centre(pose) for name, pose in images_of(truth.data / "sparse").items()}
-    first = min(centres)
-    far = max(centres, key=lambda name: math.dist(centres[first], centres[name]))
-    return f"images:{first},{far},{math.dist(centres[first], centres[far]):.9f}"
-
-
 def raw_model(truth, base):
     """COLMAP's model of the photographs under water, with a lens that COLMAP calibrates itself. It
     is kept as long as the photographs: for good if they are in git, else in the scene's folder."""
@@ -103,8 +79,7 @@ def at_true_poses(model, truth, output):
     output.mkdir(parents=True, exist_ok=True)
     for name in ("cameras.txt", "points3D.txt"):
         (output / name).write_text((model / name).read_text())
-    lines = [line for line in (model / "images.txt").read_text().split("\n")
-             if not line.startswith("#")]
+    lines = records(model / "images.txt")
     for i in range(0, len(lines) - 1, 2):
         fields = lines[i].split()
         lines[i] = " ".join([fields[0], *poses[fields[9]], *fields[8:]])
@@ -118,7 +93,8 @@ def refined(scene, base, work):
     work.mkdir(parents=True, exist_ok=True)
     raw = raw_model(truth, base)
     colmaps = align(raw, truth.data / "sparse", work / "raw")
-    ours = refine(truth, raw, work / "refined", "--refine", "none", "--scale-from", baseline(truth))
+    ours = refine(truth, raw, work / "refined", "--refine", "none", "--scale-from",
+                  baseline(truth.data / "sparse"))
     off = align(work / "refined", truth.data / "sparse", work / "aligned")
     at_true_poses(work / "raw", truth, work / "true")
     true = refine(truth, work / "true", work / "placed", "--poses", "known")
@@ -142,8 +118,7 @@ def cloud(scene, base, work):
     means = {}
     for name, model in (("refined", work / "aligned"), ("true", truth.data / "sparse")):
         folder = work / f"cloud-{name}"
-        runs.import_scene(folder, model, truth.data / "water", truth.data / "housing.json")
-        runs.densify(folder, "--refractive")
+        densified(folder, model, truth.data / "water", truth.data / "housing.json")
         means[name] = runs.evaluate(folder, truth, "water")
     ratio = means["refined"]["mean"] / means["true"]["mean"]
     seen = "; ".join(f"{name} mean {1e3 * m['mean']:.3f} mm F {m['f']:.3f}"

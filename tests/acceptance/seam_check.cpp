@@ -18,6 +18,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "check_program.h"
 #include "cloud/tiles.h"
 #include "geometry/surface.h"
 #include "io/bytes/json.h"
@@ -81,7 +82,6 @@ std::vector<Strip> strips_of(const std::string& file, const std::vector<cloud::T
 }
 
 int run(int argc, char** argv) {
-  if (argc < 6) fail("seam_check WHOLE.ply TILED.ply MESH.ply WIDTH TILE.json...");
   std::vector<cloud::Tile> tiles;
   for (int i = 5; i < argc; ++i) tiles.push_back(read_tile(argv[i]));
   const geometry::Surface surface(io::read_mesh_ply(argv[3]));
@@ -102,10 +102,6 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "seam_check: " << error.what() << "\n";
-    return 1;
-  }
+  return axial::check_program(argc, argv, 5, 999,
+                              "seam_check WHOLE.ply TILED.ply MESH.ply WIDTH TILE.json...", run);
 }

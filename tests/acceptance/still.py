@@ -8,25 +8,11 @@ from axial_pipeline import truth as pipeline_truth
 from axial_pipeline.colmap_model import colmap_model
 from points import BASE, point, truth_of
 from support import runs
+from support.colmap_text import centres
 from support.runs import BIN, PROGRAMS, measured
 
 MASKED = 3.0  # largest error of a camera centre with the mask that was offered, at most [mm]
 ORDINARY = ("outcrop", "sand", "transect", "thicket", "survey")
-
-
-def centres(model):
-    """The camera centres -R^T t of a COLMAP text model, by image name."""
-    lines = [line.split() for line in (model / "images.txt").read_text().splitlines()
-             if not line.startswith("#")]
-    found = {}
-    for _, w, x, y, z, *rest in lines[::2]:
-        w, x, y, z, *t = map(float, (w, x, y, z, *rest[:3]))
-        rotation = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                    [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                    [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
-        found[rest[-1].rsplit(".", 1)[0]] = [-sum(rotation[row][k] * t[row] for row in range(3))
-                                             for k in range(3)]
-    return found
 
 
 def with_arm(work, data):
@@ -36,7 +22,7 @@ def with_arm(work, data):
         target = images / f"{photograph.stem}.png"
         if not target.exists():
             images.mkdir(parents=True, exist_ok=True)
-            measured(images.parent / "overlay.log", BIN / "static_overlay", photograph, target)
+            measured(images.parent / "overlay.log", BIN / "dive_photograph", "arm", 0, photograph, target)
     truth.mkdir(parents=True, exist_ok=True)
     for name in ("cameras.txt", "points3D.txt", "images.txt"):
         (truth / name).write_text((data / "sparse" / name).read_text().replace(".jpg", ".png"))

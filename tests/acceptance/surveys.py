@@ -4,9 +4,9 @@
 import json
 import re
 
-from points import BASE, densified, point
+from points import BASE, meshed, point
 from support import runs
-from support.runs import BIN, PROGRAMS, measured
+from support.runs import BIN, measured
 
 # The rules of CompareSurveys were chosen with the seeds 41, 42 and 43. In the reef of seed 46, the
 # views see no boulder that could move.
@@ -17,15 +17,10 @@ VOLUME, FALSE = 5, 1  # at most [%]
 def survey(work, seed, *options):
     """The folder of a survey with scene_dense.mvs and mesh.ply, and the folder of its truth."""
     name = f"reef-{seed}-survey" + ("-changed" if options else "")
-    data = runs.simulated(name, BASE, "--preset", "reef", "--seed", seed, "--medium", "water",
-                          "--truth", 0, *options).data
-    folder = work / name
-    densified(folder, data / "sparse", data / "water", data / "housing.json",
-              "--resolution-level", 1)
-    if not (folder / "mesh.ply").exists():
-        measured(folder / "mesh.log", *PROGRAMS.reconstruct_mesh(
-            folder / "scene_dense.mvs", folder / "mesh.ply", "--refractive"))
-    return folder, data
+    truth = runs.simulated(name, BASE, "--preset", "reef", "--seed", seed, "--medium", "water",
+                           "--truth", 0, *options)
+    meshed(work / name, truth, "water", 1)
+    return work / name, truth.data
 
 
 def compared(before, after, seed, align):
@@ -38,7 +33,7 @@ def compared(before, after, seed, align):
     measured(checked, BIN / "change_check", seed, change)
     said = checked.read_text()
     volumes = re.search(r"volumes: came (\S+) gone (\S+) others: came (\S+) gone (\S+)", said)
-    areas = re.search(r"compared (\S+) changed (\S+) missed \S+ false (\S+)", said)
+    areas = re.search(r"compared (\S+) changed (\S+) false (\S+)", said)
     return (json.loads(change.with_suffix(".change.json").read_text()),
             [float(v) for v in volumes.groups()], [float(v) for v in areas.groups()])
 
@@ -69,7 +64,8 @@ def judged(work, seed, align):
     hidden = 100 * hidden_came / truth["came"], 100 * hidden_gone / truth["gone"]
     whole = [100 * (report[kind]["volume"] / truth[kind] - 1) for kind in ("came", "gone")]
     return (f"{seed} {align}: {text}; of the whole truth: came {whole[0]:+.1f} %, gone {whole[1]:+.1f} %, "
-            f"of which {hidden[0]:.1f} and {hidden[1]:.1f} % were not compared; false {false:.2f} % of {area - changed:.1f} m2",
+            f"of which {hidden[0]:.1f} and {hidden[1]:.1f} % were not compared; "
+            f"false {false:.2f} % of {area - changed:.1f} m2",
             max(map(abs, deviations.values())) <= VOLUME and false <= FALSE)
 
 

@@ -4,28 +4,16 @@
 import json
 
 from benchmarks import end_to_end
-from points import densified, point, truth_of
+from points import point
 from support.runs import BIN, measured
-
-
-@point("at most 40 CPU-s per megapixel of depth map at the defaults")
-def speed(work):
-    data, seen, worst = truth_of("closeup").data, [], 0
-    for medium, housing in (("air", None), ("water", data / "housing.json")):
-        # At 1024 x 768 the default is level 0, because --min-resolution 640 forbids halving.
-        cost = densified(work / f"closeup-true-{medium}", data / "sparse", data / medium, housing,
-                         "--resolution-level", 0)
-        per = cost["cpu"] / cost["megapixels"]
-        worst = max(worst, per)
-        seen.append(f"{medium} {per:.1f} CPU-s/Mpx, {cost['memory'] / 2**20:.0f} MiB")
-    return "; ".join(seen), worst <= 40
 
 
 def beside_sift(programs, pairs, limit, least_points):
     result = end_to_end.compared(programs, pairs)
     ours, sift = result["DensifyPointCloud"], result["SIFT"]
     return (f"{ours['of_sift']:.3f} times SIFT ({end_to_end.spread(ours)}): {ours['cpu']:.1f} and "
-            f"{sift['cpu']:.1f} CPU-s, {ours['megapixels'] / ours['cpu']:.3f} Mpx per CPU-s, {ours['points']:,.0f} points, "
+            f"{sift['cpu']:.1f} CPU-s, {ours['megapixels'] / ours['cpu']:.3f} Mpx per CPU-s, "
+            f"{ours['points']:,.0f} points, "
             f"{ours['memory'] / 2**20:.0f} MiB"), \
         ours["of_sift"] <= limit and ours["points"] >= least_points
 

@@ -7,7 +7,7 @@ import statistics
 import subprocess
 
 from meshes import judged
-from points import BASE, densified, point
+from points import BASE, meshed, point
 from support import runs
 from support.runs import BIN, PROGRAMS, measured
 
@@ -22,18 +22,15 @@ def made(work, seed, medium):
     """The folder of a scene's meshes: refined.ply, and closed-refined.ply with marks."""
     truth = runs.simulated(f"amphora-{seed}", BASE, *SIMULATED, "--seed", seed)
     folder = work / f"amphora-{seed}-{medium}-unseen"
-    refractive = ["--refractive"] if truth.housing(medium) else []
-    densified(folder, truth.data / "sparse", truth.data / medium, truth.housing(medium),
-              "--resolution-level", 0)
-    scene = folder / "scene_dense.mvs"
-    for name, more in (("", []), ("closed-", ["--close-unseen", 1])):
-        mesh, refined = folder / f"{name}mesh.ply", folder / f"{name}refined.ply"
-        if refined.exists():
-            continue
-        measured(folder / f"{name}reconstruct.log",
-                 *PROGRAMS.reconstruct_mesh(scene, mesh, *refractive), *more)
-        measured(folder / f"{name}refine.log",
-                 *PROGRAMS.refine_mesh(scene, mesh, refined, *refractive))
+    refractive, scene, mesh = meshed(folder, truth, medium, 0)
+    closed = folder / "closed-mesh.ply"
+    if not closed.exists():
+        measured(folder / "closed-mesh.log",
+                 *PROGRAMS.reconstruct_mesh(scene, closed, *refractive, "--close-unseen", 1))
+    for unrefined, refined in ((mesh, folder / "refined.ply"), (closed, folder / "closed-refined.ply")):
+        if not refined.exists():
+            measured(refined.with_suffix(".log"),
+                     *PROGRAMS.refine_mesh(scene, unrefined, refined, *refractive))
     return folder, truth
 
 

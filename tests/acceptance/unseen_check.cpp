@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "check_program.h"
 #include "evaluate/sampling.h"
 #include "evaluate/views.h"
 #include "geometry/surface.h"
@@ -24,7 +25,6 @@ namespace {
 using namespace axial;
 
 int run(int argc, char** argv) {
-  if (argc != 3 && argc != 4) fail("unseen_check MESH.ply MODEL [HOUSING.json]");
   const Mesh mesh = io::read_mesh_ply(argv[1]);
   const io::ColmapModel model = io::read_colmap_model(argv[2]);
   std::optional<io::Housing> housing;
@@ -52,10 +52,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "unseen_check: " << error.what() << "\n";
-    return 1;
-  }
+  return axial::check_program(argc, argv, 2, 3, "unseen_check MESH.ply MODEL [HOUSING.json]", run);
 }

@@ -15,8 +15,8 @@ import unittest
 
 from pipeline_folder import InFolder
 from programs import BIN, ProgramTest, grey_png, main, read, write
-from reconstruct_test import camera_centres
 from stand_ins import SCRIPT, StandIns
+from support import colmap_text
 
 from axial_pipeline import cameras, exif, features, lenses, photographs, turns
 from axial_pipeline.failure import Failure
@@ -338,7 +338,7 @@ class TwoSizes(ProgramTest):
             name = f"000{number}.jpg"
             shutil.copyfile(self.path("400", "water", name), self.path("480", "water", name))
         images = pathlib.Path(self.path("480", "sparse", "images.txt"))
-        write(self.path("positions.txt"), "".join(camera_centres(images)))
+        write(self.path("positions.txt"), colmap_text.positions(images.parent))
         ended = subprocess.run(
             [sys.executable, "-B", str(SCRIPT), "--scale-from", f"positions:{self.path('positions.txt')}",
              "--images", self.path("480", "water"), "--lens",

@@ -12,8 +12,10 @@ from programs import main
 
 PAPER = pathlib.Path(__file__).resolve().parents[2] / "docs" / "paper"
 sys.path.insert(0, str(PAPER))
+import cells  # noqa: E402
+import clouds  # noqa: E402
 import reconstruction  # noqa: E402
-import tables  # noqa: E402
+import simulations  # noqa: E402
 
 
 def results(experiment, parts):
@@ -24,15 +26,15 @@ class Cells(unittest.TestCase):
     def test_numbers_have_significant_digits_and_no_exponent(self):
         for value, text in ((0.26714, "0.267"), (0.0099996, "0.0100"), (24617.3, "24600"), (1.0, "1.00"),
                             (-0.00123456, "-0.00123"), (0, "0"), (float("inf"), "inf")):
-            self.assertEqual(tables.significant(value), text)
-        self.assertEqual(tables.significant(-0.000012345, 2), "-0.000012")
+            self.assertEqual(cells.significant(value), text)
+        self.assertEqual(cells.significant(-0.000012345, 2), "-0.000012")
 
     def test_lengths_are_millimetres_and_shares_percent_or_a_dash(self):
-        self.assertEqual([tables.millimetres(0.00087125), tables.percent(0.7416)], ["0.871", "74.2"])
-        self.assertEqual([tables.millimetres(None), tables.percent(None)], ["-", "-"])
+        self.assertEqual([cells.millimetres(0.00087125), cells.percent(0.7416)], ["0.871", "74.2"])
+        self.assertEqual([cells.millimetres(None), cells.percent(None)], ["-", "-"])
 
     def test_verdicts_say_yes_or_no(self):
-        self.assertEqual(tables.verdicts(("at most 1", "0.5", True), ("at most 1", "2", False)),
+        self.assertEqual(cells.verdicts(("at most 1", "0.5", True), ("at most 1", "2", False)),
                          "| asked | seen | met |\n|---|---|---|\n"
                          "| at most 1 | 0.5 | yes |\n| at most 1 | 2 | no |\n")
 
@@ -41,18 +43,18 @@ class Cells(unittest.TestCase):
         part = lambda result: {"inputs": {"setup": {"camera": camera, "plane_degrees": 0}}, "result": result}
         parts = {"setup2_default_9px": part("usual"), "setup2_distance_mm_2_9px": part("near"),
                  "setup2_n_water_1.34_9px": part("salty"), "setup1_fov_degrees_50_9px": part("other")}
-        self.assertEqual(tables.series_of(results("figure4", parts), 2, "_9px"),
+        self.assertEqual(simulations.series_of(results("figure4", parts), 2, "_9px"),
                          {"distance_mm": [(2, "near"), (20, "usual")],
                           "n_water": [(1.333, "usual"), (1.34, "salty")]})
-        self.assertEqual(tables.value_title("n_water", 1.34), "refractive index of the water 1.34")
-        self.assertEqual(tables.value_title("tilt_degrees", 3.0), "interface tilt 3\u00b0")
+        self.assertEqual(simulations.value_title("n_water", 1.34), "refractive index of the water 1.34")
+        self.assertEqual(simulations.value_title("tilt_degrees", 3.0), "interface tilt 3\u00b0")
 
     def test_titles_say_what_is_varied(self):
         for name, title in (("usual", "the usual case"), ("tilt_degrees_6", "tilt 6\u00b0"),
                             ("scale_2", "everything but the port, times 4"),
                             ("near_tilt_degrees_6", "everything but the port, times 0.5, and tilt 6\u00b0"),
                             ("reef", "scene 'reef' as it comes")):
-            self.assertEqual(tables.need_title(name), title)
+            self.assertEqual(clouds.need_title(name), title)
 
 
 class Completeness(unittest.TestCase):
@@ -66,7 +68,7 @@ class Completeness(unittest.TestCase):
         inputs = {"scene": ["--preset", "reef"], "medium": "water", "poses": "colmap", "tolerance": 0.005}
         parts = {f"seed{seed}": {"inputs": inputs, "result": report(recall)}
                  for seed, recall in zip((3, 8, 5), recalls)}
-        return tables.completeness(results("completeness_reef", parts))["completeness_reef.md"]
+        return clouds.completeness(results("completeness_reef", parts))["completeness_reef.md"]
 
     def test_one_row_for_each_seed_and_their_median(self):
         table = self.table(0.2, 0.9, 0.3)
@@ -134,7 +136,7 @@ class Page(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="axial_")
         self.addCleanup(folder.cleanup)
         self.folder, self.page = pathlib.Path(folder.name), pathlib.Path(folder.name, "page.md")
-        errors = {warp: [0.25, 77.7, -1] for warp in tables.SHOWN_WARPS}
+        errors = {warp: [0.25, 77.7, -1] for warp in simulations.SHOWN_WARPS}
         parts = {f"setup{k}": {"inputs": {}, "result": {"texels_across": 1, "errors": errors}} for k in (1, 2)}
         (self.folder / "figure3.json").write_text(json.dumps(results("figure3", parts)))
 

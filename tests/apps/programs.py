@@ -14,6 +14,7 @@ import zlib
 
 import scenes
 
+sys.path.append(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))  # for `support`
 BIN = os.environ.get("AXIAL_BIN", "")
 
 

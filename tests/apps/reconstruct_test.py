@@ -14,6 +14,7 @@ import time
 import unittest
 
 from programs import BIN, main, read, run
+from support import colmap_text
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
 STEPS = ["features", "lens", "matches", "poses", "refine", "import", "densify", "mesh",
@@ -21,18 +22,6 @@ STEPS = ["features", "lens", "matches", "poses", "refine", "import", "densify", 
 PAGE = pathlib.Path(BIN).resolve().parent / "share" / "axialmvs" / "view" / "viewer.js"
 if PAGE.exists():
     STEPS.insert(-1, "page")
-
-
-def camera_centres(images):
-    """The lines of a position file with the centre -R^T t of every image of a COLMAP text model."""
-    lines = [line.split() for line in images.read_text().splitlines() if not line.startswith("#")]
-    for _, w, x, y, z, *rest in lines[::2]:
-        w, x, y, z, *t = map(float, (w, x, y, z, *rest[:3]))
-        rotation = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                    [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                    [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
-        centre = [-sum(rotation[row][column] * t[row] for row in range(3)) for column in range(3)]
-        yield " ".join([rest[-1], *map(str, centre)]) + "\n"
 
 
 @unittest.skipUnless(shutil.which("colmap"), "COLMAP is not installed")
@@ -46,7 +35,7 @@ class Reconstruct(unittest.TestCase):
                    "-o", cls.scene)
         assert made.returncode == 0, made.stderr
         cls.positions = cls.scene / "positions.txt"
-        cls.positions.write_text("".join(camera_centres(cls.scene / "sparse" / "images.txt")))
+        cls.positions.write_text(colmap_text.positions(cls.scene / "sparse"))
 
     @classmethod
     def tearDownClass(cls):
@@ -152,7 +141,7 @@ class Reconstruct(unittest.TestCase):
 
     def test_names_positions_of_no_photograph(self):
         out = pathlib.Path(self.folder.name) / "positions"
-        lines = list(camera_centres(self.scene / "sparse" / "images.txt"))
+        lines = colmap_text.positions(self.scene / "sparse").splitlines(keepends=True)
         misspelt = pathlib.Path(self.folder.name) / "misspelt.txt"
         misspelt.write_text("# survey\n" + "".join(["other" + line for line in lines[:-2]]
                                                    + lines[-2:]))

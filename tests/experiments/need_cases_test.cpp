@@ -27,7 +27,7 @@ TEST(NeedCases, DifferInNameAndWhatIsDone) {
   }
   EXPECT_EQ(names.size(), all.size());
   EXPECT_EQ(done.size(), all.size());
-  EXPECT_TRUE(all.front().is_usual());
+  EXPECT_EQ(all.front().name, "usual");
   EXPECT_FALSE(all.front().calibrated_in);
 }
 

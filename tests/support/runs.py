@@ -17,6 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "apps" / "pipeline"))
 from axial_pipeline import truth as pipeline_truth  # noqa: E402
 from axial_pipeline.programs import Programs  # noqa: E402
+from support import colmap_text  # noqa: E402
 
 BIN = ROOT / "build" / "release" / "bin"
 PROGRAMS = Programs(BIN)
@@ -102,9 +103,8 @@ def survey(views, base):
         (folder / "rendered").touch()
     if views == SURVEY_VIEWS:
         return folder / "sparse", folder / "air"
-    measured(base / "survey.log", sys.executable, ROOT / "tests/acceptance/hold_out.py",
-             folder / "sparse", folder / f"sparse-{views}",
-             *[f"{i:04}.jpg" for i in range(views, SURVEY_VIEWS)])
+    colmap_text.copy(folder / "sparse", folder / f"sparse-{views}",
+                     without=[f"{i:04}.jpg" for i in range(views, SURVEY_VIEWS)])
     return folder / f"sparse-{views}", folder / "air"
 
 
