@@ -73,7 +73,7 @@ connection.commit()
 
 @functools.cache
 def descriptor(number):
-    return random.Random(number).randbytes(similar.LENGTH)
+    return random.Random(number).randbytes(database.DESCRIPTOR)
 
 
 class WithStandIn(InFolder):
@@ -275,11 +275,10 @@ class Overview(WithStandIn):
         self.assertEqual(database.names(self.features)[1], "dive 1/001.jpg")
 
     def test_scales_are_those_of_all_forms_of_keypoints(self):
-        affine = array.array("f", [0, 0, 1, 0, 0, 1, 0, 0, 3, 0, 0, -3, 0, 0, 0, 2, 2, 0]).tobytes()
-        self.assertEqual(overview.largest(6, affine, 2), [1, 2])
-        plain = array.array("f", [0, 0, 1, 9, 0, 0, 2, 0, 0, 0, 2, 0]).tobytes()
-        self.assertEqual(overview.largest(4, plain, 2), [1, 2])
-        self.assertEqual(overview.largest(2, array.array("f", [0, 0, 1, 1]).tobytes(), 1), [0])
+        for columns, numbers, coarsest in ((6, [0, 0, 1, 0, 0, 1, 0, 0, 3, 0, 0, -3, 0, 0, 0, 2, 2, 0], [1, 2]),
+                                           (4, [0, 0, 1, 9, 0, 0, 2, 0, 0, 0, 2, 0], [1, 2]), (2, [0, 0, 1, 1], [0, 1])):
+            scales = database.scales_in(database.columns_in(array.array("f", numbers).tobytes(), columns))
+            self.assertEqual(database.coarsest(scales, 2), coarsest)
 
     def test_candidates_are_alike_near_or_follow_each_other(self):
         named = {5: "a", 4: "b", 3: "c", 2: "d", 1: "e"}

@@ -15,10 +15,10 @@ from axial_pipeline.programs import Programs
 
 class Demo(InFolder):
     def test_a_depth_map_has_the_number_of_its_image(self):
-        images = self.write("images.txt", "# 1 2 3\n6 1 0 0 0 0 0 0 1 0005.jpg\n"
-                            "1 2 3 4 5 6 7 8 9\n7 1 0 0 0 0 0 0 1 0006.jpg\n\n")
-        self.assertEqual(demo.depth_map_number(images, "0005.jpg"), 5)
-        self.assertIsNone(demo.depth_map_number(images, "0004.jpg"))
+        self.write("images.txt", "# 1 2 3\n6 1 0 0 0 0 0 0 1 0005.jpg\n"
+                   "1 2 3 4 5 6 7 8 9\n7 1 0 0 0 0 0 0 1 0006.jpg\n\n")
+        self.assertEqual(demo.depth_map_of(self.folder, "0005.jpg"), "depth0005.dmap")
+        self.assertIsNone(demo.depth_map_of(self.folder, "0004.jpg"))
 
     def test_truth_is_made_once_by_each_program(self):
         programs, made = Programs(self.folder), self.folder / "made"

@@ -8,7 +8,7 @@ import pathlib
 import shutil
 import time
 
-from . import demo_mesh, demo_page, demo_survey, demo_table, files, truth
+from . import colmap, demo_mesh, demo_page, demo_survey, demo_table, files, truth
 from .colmap_model import colmap_model
 from .failure import run_main
 from .programs import Programs
@@ -77,24 +77,19 @@ class Demo:
     def depth_pictures(self, run, poses, log):
         """Draws two depth maps beside the truth."""
         for view in PICTURED_VIEWS:
-            number = depth_map_number(poses / "images.txt", f"{view}.jpg")
-            if number is None:
-                continue
-            folder = self.work / run
-            shown(self.programs.evaluate(
-                folder / f"depth{number:04}.dmap", self.truth / self.media[run] / f"{view}.distance.tiff",
-                "--tolerance", TOLERANCES[self.scene], "--picture", folder / f"depth-{view}.png"),
-                output=log)
+            depth_map = depth_map_of(poses, f"{view}.jpg")
+            if depth_map:
+                folder = self.work / run
+                shown(self.programs.evaluate(
+                    folder / depth_map, self.truth / self.media[run] / f"{view}.distance.tiff", "--tolerance",
+                    TOLERANCES[self.scene], "--picture", folder / f"depth-{view}.png"), output=log)
 
 
-def depth_map_number(images, name):
-    """The number in the name of an image's depth map: COLMAP's image id minus one. None if the
-    text file `images` of a COLMAP model does not have the image."""
-    for line in images.read_text().splitlines():
-        fields = line.split()
-        if fields[9:10] == [name]:
-            return int(fields[0]) - 1
-    return None
+def depth_map_of(model, name):
+    """The name of an image's depth map, which has COLMAP's image id minus one. None if the COLMAP model does not
+    have the image."""
+    number = colmap.images_in(model).get(name)
+    return None if number is None else f"depth{number - 1:04}.dmap"
 
 
 def reconstruct_three_ways(demo):

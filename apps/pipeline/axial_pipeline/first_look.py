@@ -14,7 +14,7 @@ import sqlite3
 import statistics
 import tempfile
 
-from . import colmap, database, doubles, estimates, features, files, left_out, still_features
+from . import colmap, database, estimates, features, files, left_out
 from .failure import Failure
 from .first_checks import PREFIX
 from .photographs import few
@@ -81,7 +81,7 @@ def keep_coarse(file):
     """Keeps the MATCHED coarsest features of each photograph in a database, so that COLMAP matches them soon."""
     with database.opened(file) as connection:
         for image, in connection.execute("SELECT image_id FROM keypoints WHERE rows > ?", (MATCHED,)).fetchall():
-            kept = doubles.coarsest(still_features.features_in(connection, image), MATCHED)
+            kept = database.keypoints_of(connection, image).coarsest(MATCHED)
             places = array.array("f", [value for place in zip(kept.xs, kept.ys) for value in place])
             connection.execute("UPDATE keypoints SET rows = ?, cols = 2, data = ? WHERE image_id = ?",
                                (MATCHED, places.tobytes(), image))
@@ -89,10 +89,10 @@ def keep_coarse(file):
                                (MATCHED, kept.descriptors, image))
 
 
-def share_of_cells(features_of, numbers, size):
+def share_of_cells(keypoints, numbers, size):
     """The part of the cells with features that holds features of these numbers."""
-    everywhere = doubles.cells_of(features_of, range(len(features_of.xs)), *size)
-    return len(doubles.cells_of(features_of, numbers, *size)) / max(1, len(everywhere))
+    everywhere = database.cells_of(zip(keypoints.xs, keypoints.ys), size)
+    return len(database.cells_of(keypoints.places(numbers), size)) / max(1, len(everywhere))
 
 
 def overlaps_in(file, pairs):
@@ -107,7 +107,7 @@ def overlaps_in(file, pairs):
             ends = sorted(images[name] for name in pair)
             numbers = array.array("I", matches.get(database.PAIR * ends[0][0] + ends[1][0]) or b"")
             found[pair] = statistics.mean(
-                share_of_cells(still_features.features_in(connection, image), numbers[k::2], size)
+                share_of_cells(database.keypoints_of(connection, image), numbers[k::2], size)
                 for k, (image, size) in enumerate(ends))
     return found
 

@@ -44,17 +44,6 @@ def scale_names(given):
     return set(words.replace('"', "").split(",")) if kind == "images" else set()
 
 
-def best_first(folders, given):
-    """The models in the folders of one or two runs of the mapper, each with its number of photographs: first
-    the one with the most photographs, of two with equally many the one that has the photographs of
-    --scale-from."""
-    wanted = scale_names(given)
-    found = [(colmap.registered(model), len(wanted & colmap.names_in(model)), -number, model)
-             for number, folder in enumerate(folders) if folder.is_dir()
-             for model in sorted(folder.iterdir()) if colmap.is_model(model)]
-    return [(model, count) for count, _, _, model in sorted(found, key=lambda one: one[:3], reverse=True)]
-
-
 def try_free_lens(file, given, models, options, log):
     """Runs the mapper again, with a lens that it calibrates itself. Models whose lens ran away are removed."""
     free = models / FREE
@@ -71,16 +60,16 @@ def take_best(file, given, out, options):
     names, models = database.names(file), out / "colmap"
     photographs = sorted(names.values()) if names else []
     before = {name: LEFT_OUT.format(reason) for name, reason in database.left_out(file).items()}
-    first = best_first([models], given)
+    first = colmap.best_first([models], scale_names(given))
     if not given.lens_model and (not first or first[0][1] < len(photographs)):
         count = f"{first[0][1]} of {len(photographs)} photographs have" if first else "no photograph has"
         print(f"    {count} poses with the lens behind the port; COLMAP tries to calibrate a lens", flush=True)
         try_free_lens(file, given, models, options, out / "logs" / "poses-free.log")
-    found = best_first([models, models / FREE], given)
+    found = colmap.best_first([models, models / FREE], scale_names(given))
     if not found:
         raise colmap.no_poses(out / "logs" / "poses.log")
     best, count = found[0]
-    left_out = reasons(file, colmap.names_in(best), [(model, n) for model, n in found[1:]
+    left_out = reasons(file, colmap.images_in(best), [(model, n) for model, n in found[1:]
                                                      if model.parent == best.parent])
     left_out |= before
     record = {"photographs": (len(photographs) or count) + len(before), "registered": count, "left_out": left_out}
@@ -102,7 +91,7 @@ def reasons(file, registered, others):
     for name, one in found.items():
         if name in registered:
             continue
-        model = next((n for model, n in others if name in colmap.names_in(model)), 0)
+        model = next((n for model, n in others if name in colmap.images_in(model)), 0)
         why[name] = (f"in another model, of {model} photographs" if model
                      else f"{one.count} features" if one.count < FEW_FEATURES
                      else f"at most {matches[name]} matches with another photograph" if matches[name] < FEW_MATCHES

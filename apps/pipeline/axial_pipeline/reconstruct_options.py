@@ -7,7 +7,7 @@ import itertools
 import os
 import pathlib
 
-from . import (cameras, cluster, colmap, database, doubles, estimates, files, first_checks, first_look, lenses,
+from . import (cameras, cluster, colmap, doubles, estimates, files, first_checks, first_look, lenses,
                masks, matching, photographs, poses, positions, video)
 from .failure import Failure
 from .option_files import find_option, has_option
@@ -53,7 +53,7 @@ def options(script_folder, description):
                         f"{matching.FROM_CASCADE} images, otherwise cascade (default: %(default)s)")
     parser.add_argument("--vocabulary", default="",
                         help="vocabulary tree for COLMAP, for --matcher vocabulary")
-    parser.add_argument("--lens-model", default="", choices=("", *database.LENS_MODELS), metavar="MODEL",
+    parser.add_argument("--lens-model", default="", choices=("", *lenses.MODELS), metavar="MODEL",
                         help="lens model that COLMAP calibrates, so that it absorbs the refraction (default: COLMAP "
                         "keeps the lens that lens and port give; if photographs have no pose then, it calibrates "
                         "this lens)")

@@ -9,10 +9,8 @@ photographs fountain-P11: no feature has the same pixel within LARGEST_MOVE and 
 LEAST_COSINE in 20 % of the photographs, as many as in photographs that were moved against each other
 (chance). At a cosine of 0.8, 1 in 200 features has them in 20 %, and none in 50 %."""
 
-import array
 import collections
 import contextlib
-import dataclasses
 import json
 import math
 import operator
@@ -23,6 +21,7 @@ import time
 import zlib
 
 from . import files
+from .database import keypoints_of
 
 FOUND, MASK = "still_features.json", "still_features.png"  # below the output folder
 SAMPLE, REFERENCES = 16, 4  # photographs that are compared, and those that all are compared with
@@ -34,32 +33,6 @@ LEAST_SHARE = 0.5  # of the other photographs
 LEAST_FEATURES = 8  # fewer change no pose
 NEAR = 0.05  # part of the width: the size of cells, and features in cells that touch are one region
 MARGIN, OF_SCALE = 0.01, 6  # around a feature: part of the width, and size of its descriptor
-
-
-@dataclasses.dataclass
-class Features:
-    """The features of a photograph."""
-    xs: array.array  # [px], pixel centres at 0.5
-    ys: array.array
-    scales: list
-    descriptors: bytes  # 128 each
-
-    def descriptor(self, number):
-        return self.descriptors[128 * number:128 * number + 128]
-
-
-def features_of(rows, columns, keypoints, descriptors):
-    """The Features in a row of COLMAP's tables, which may have more numbers for each feature than its
-    place: scale and orientation, or an affine shape."""
-    numbers = array.array("f")
-    numbers.frombytes(keypoints)
-    column = [numbers[k::columns] for k in range(columns)]
-    scales = [0.0] * rows
-    if columns == 4:
-        scales = list(column[2])
-    if columns == 6:
-        scales = [math.sqrt(abs(a * d - b * c)) for a, b, c, d in zip(*column[2:])]
-    return Features(column[0], column[1], scales, descriptors)
 
 
 def sample_of(items, count):
@@ -88,7 +61,7 @@ def cells_of(features, size):
 
 def counts_of_rest(reference, others, largest_move):
     """In how many of the photographs `others` each feature of `reference` is at rest. `others`: their
-    Features and cells_of()."""
+    Keypoints and cells_of()."""
     counts = [0] * len(reference.xs)
     size = 2 * largest_move
     for other, cells in others:
@@ -117,7 +90,7 @@ def move_of(width):
 
 
 def at_rest(photographs, width):
-    """(x, y, scale, share of photographs) of the features at rest. `photographs`: Features."""
+    """(x, y, scale, share of photographs) of the features at rest. `photographs`: Keypoints."""
     largest_move = move_of(width)
     sample = [(one, cells_of(one, 2 * largest_move)) for one in photographs]
     found = []
@@ -190,23 +163,13 @@ def cameras_in(connection):
             yield width, height, images
 
 
-def features_in(connection, image):
-    keypoints = connection.execute("SELECT rows, cols, data FROM keypoints WHERE image_id = ?",
-                                   (image,)).fetchone()
-    descriptors = connection.execute("SELECT data FROM descriptors WHERE image_id = ?",
-                                     (image,)).fetchone()
-    if not keypoints or not descriptors or not keypoints[0]:
-        return Features(array.array("f"), array.array("f"), [], b"")
-    return features_of(*keypoints, *descriptors)
-
-
 def find(database):
     """(width, height, features at rest) of the camera with the most of them. Nothing if there are too
     few, or if `database` is not one of COLMAP or is damaged."""
     found, damage = [], (sqlite3.Error, LookupError, TypeError, ValueError)
     with contextlib.suppress(*damage), contextlib.closing(sqlite3.connect(database)) as connection:
         for width, height, images in cameras_in(connection):
-            sample = [features_in(connection, image) for image in sample_of(images, SAMPLE)]
+            sample = [keypoints_of(connection, image) for image in sample_of(images, SAMPLE)]
             found.append((width, height, at_rest(sample, width)))
     return max((one for one in found if len(one[2]) >= LEAST_FEATURES),
                key=lambda one: len(one[2]), default=None)
