@@ -11,7 +11,6 @@ import os
 import pathlib
 import random
 import shutil
-import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -22,7 +21,7 @@ from pipeline_folder import InFolder
 from programs import main, run
 from stand_ins import StandIns, photograph
 
-from axial_pipeline import cascade, colmap, database, matching, overview, ownership, similar, steps
+from axial_pipeline import cascade, colmap, database, matching, overview, similar, step_kinds, steps
 from axial_pipeline.failure import Failure
 
 SIZE, FEATURES = (80, 80), 400  # of a photograph
@@ -205,8 +204,9 @@ class Steps(WithStandIn):
         self.assertTrue({self.full, *cascade.files_beside(self.full)} <= set(step.changed))
 
     def test_all_files_belong_to_the_step(self):
+        patterns = step_kinds.KINDS["matches"].writes
         for path in [self.full, *cascade.files_beside(self.full)]:
-            self.assertTrue(any(fnmatch.fnmatchcase(path.name, one) for one in ownership.WRITES["matches"]), path)
+            self.assertTrue(any(fnmatch.fnmatchcase(path.name, one) for one in patterns), path)
 
     def test_nothing_alike_is_tried_with_neighbours_by_name(self):
         with database.opened(self.features) as connection:

@@ -9,7 +9,7 @@ import unittest.mock
 from pipeline_folder import InFolder
 from programs import main
 
-from axial_pipeline import cluster, jobs, one_step, ownership, reconstruct_options, reconstruct_steps, steps
+from axial_pipeline import cluster, jobs, one_step, reconstruct_options, reconstruct_steps, step_kinds, steps
 from axial_pipeline.failure import Failure
 
 
@@ -64,9 +64,6 @@ class Jobs(InFolder):
         with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
             return jobs.Survey({"given": given, "images": images,
                                 "node": {"cpus": 64, "memory_mb": 10**6}}, reconstruct_steps.steps)
-
-    def test_every_step_asks_for_something(self):
-        self.assertEqual(set(ownership.WRITES), set(jobs.NEEDS) - {"plan"})
 
     def test_programs_that_plan_their_memory_keep_to_their_job(self):
         self.assertEqual(one_step.limits_of(["bin/CompareSurveys", "--max-threads=1"], 2, 1000),
@@ -141,7 +138,7 @@ class Jobs(InFolder):
         step, _ = self.survey(matcher="cascade").step("matches")
         self.assertEqual(step.command[:4], ["colmap", "matches_importer", "--database_path",
                                             str(self.folder / "overview.db")])
-        self.assertEqual(step.writes, ownership.WRITES["matches"])
+        self.assertEqual(step.writes, step_kinds.KINDS["matches"].writes)
 
     def test_time_of_matching_grows_with_the_pairs(self):
         # 499,500 pairs of 0.9 s on 16 processors, twice: 936.6 minutes

@@ -18,7 +18,8 @@ import unittest.mock
 from pipeline_folder import InFolder
 from programs import grey_png, main, run
 
-from axial_pipeline import colmap, gps, matching
+from axial_pipeline import colmap, matching, photographs
+from axial_pipeline.exif import exif_in
 from axial_pipeline.failure import Failure
 
 # The table of COLMAP 3.8.
@@ -41,11 +42,18 @@ def exif(tags=ALL, order="<", seconds=3):
     return {"<": b"II*\0\x08\0\0\0", ">": b"MM\0*\0\0\0\x08"}[order] + tables
 
 
-def jpeg(photograph=b"\xff\xd8\xff\xd9", **options):
+FRAME = b"\xff\xd8\xff\xc0" + struct.pack(">HBHHB", 8, 8, 3, 4, 1) + b"\xff\xd9"
+
+
+def jpeg(photograph=FRAME, **options):
     """A JPEG file with Exif data before the rest of `photograph`."""
     segment = b"Exif\0\0" + exif(**options)
     return (photograph[:2] + b"\xff\xe1" + struct.pack(">H", len(segment) + 2) + segment
             + photograph[2:])
+
+
+def check(given):
+    matching.check(given, photographs.found_in(given.images).images)
 
 
 def rows(database, query):
@@ -85,7 +93,7 @@ class Matching(InFolder):
 
     def failure_of(self, given):
         with self.assertRaises(Failure) as caught:
-            matching.check(given)
+            check(given)
         self.assertNotIn("\n", str(caught.exception))
         return str(caught.exception)
 
@@ -122,7 +130,7 @@ class Matching(InFolder):
                  [self.positions]),
                 (self.given("vocabulary", vocabulary=tree), "vocab_tree",
                  ["--VocabTreeMatching.vocab_tree_path", tree], [pathlib.Path(tree)])):
-            matching.check(given)
+            check(given)
             step = self.step(given)
             self.assertEqual(step.command, ["colmap", f"{command}_matcher", "--database_path",
                                             str(self.folder / "database.db"), *more,
@@ -142,7 +150,7 @@ class Matching(InFolder):
         for name in "abc":
             self.write(f"images/{name}.jpg", grey_png([bytes(4)] * 3))
         self.positions.write_text("a.jpg 16 54 0\nb.jpg 16 54.0001 0\nc.jpg 16 54.0002 0\n")
-        told = self.said_by(matching.check, self.with_positions())
+        told = self.said_by(check, self.with_positions())
         self.assertIn("they are taken as degrees to find neighbours", told)
         said, found = self.prepared(self.with_positions())
         self.assertEqual(said, "")
@@ -191,7 +199,7 @@ class Matching(InFolder):
                          f"--matcher spatial: none of the photographs in {images} have {end}")
         self.write("images/dive 2/d.jpg", jpeg())
         self.write("images/dive 2/e.jpg", jpeg())
-        matching.check(self.given("spatial"))
+        check(self.given("spatial"))
 
     def test_wrong_options_are_refused(self):
         for given, said in (
@@ -206,35 +214,34 @@ class Matching(InFolder):
         self.knows("--SiftMatching.use_gpu ")
         self.assertIn("--matcher spatial: this version of COLMAP takes no positions",
                       self.failure_of(self.with_positions()))
-        matching.check(self.given("spatial"))
+        check(self.given("spatial"))
         self.write("positions.txt", "a.jpg 1 2 3\nb.jpg 1 2\n")
         self.assertEqual(self.failure_of(self.with_positions()),
                          f"{self.positions}:2: must be NAME X Y Z with finite numbers")
 
 
-class Gps(InFolder):
+class Gps(unittest.TestCase):
     def test_only_a_whole_position_counts(self):
         for order in "<>":
             for count in range(4):
                 for tags in itertools.combinations(ALL, count):
-                    file = self.write("a.jpg", jpeg(tags=tags, order=order))
-                    self.assertEqual(gps.has_gps(file), tags == ALL, (order, tags))
+                    data = jpeg(tags=tags, order=order)
+                    self.assertEqual(exif_in(data).has_position, tags == ALL, (order, tags))
 
     def test_forms_of_files(self):
         for content, expected in ((exif(), True), (exif(order=">"), True), (exif([2]), False),
                                   (b"\x89PNG\r\n\x1a\n" + b"\0\0\0\1eXIf" + exif(), True),
                                   (b"\x89PNG\r\n\x1a\n", False), (b"", False), (b"text", False)):
-            self.assertEqual(gps.has_gps(self.write("file", content)), expected)
-        self.assertFalse(gps.has_gps(self.folder / "none"))
+            self.assertEqual(exif_in(content).has_position, expected)
 
     def test_broken_data_have_no_position(self):
         """Every file that ends within the tables has none. Every file with one wrong byte is read
         without an error."""
         whole = jpeg()
-        for end in range(len(whole) - 2 - 3 * 24 - 4):
-            self.assertFalse(gps.has_gps(self.write("a.jpg", whole[:end])), end)
+        for end in range(len(whole) - len(FRAME) + 2 - 3 * 24 - 4):
+            self.assertFalse(exif_in(whole[:end]).has_position, end)
         for at in range(len(whole)):
-            gps.has_gps(self.write("a.jpg", whole[:at] + b"\xff" + whole[at + 1:]))
+            exif_in(whole[:at] + b"\xff" + whole[at + 1:])
 
 
 @unittest.skipUnless(shutil.which("colmap") and
@@ -259,7 +266,7 @@ class WithColmap(InFolder):
                                    images=str(images))
         features, database = self.folder / "features.db", self.folder / "database.db"
         with unittest.mock.patch.object(matching, "NEIGHBOURS", 2):
-            matching.check(given)
+            check(given)
             step = matching.step(given, features, database)
         self.called(colmap.features(features, images, "PINHOLE"))
         self.said = self.said_by(step.before)

@@ -17,8 +17,7 @@ import unittest.mock
 from pipeline_folder import PIPELINE, InFolder
 from programs import grey_png, main
 
-from axial_pipeline import (colmap, files, position_rows, positions, reconstruct_options, run_file, running, start_lens,
-                            steps, truth, versions)
+from axial_pipeline import colmap, files, position_rows, positions, run_file, running, start_lens, steps, truth
 from axial_pipeline.failure import Failure
 from axial_pipeline.programs import Programs, default_folder
 
@@ -285,12 +284,9 @@ class Positions(InFolder):
                     self.assertLess(math.dist(place, found), 1e-3)
 
     def test_names_of_no_photograph_are_told(self):
-        for name in ("a.jpg", "b.jpg", "c.jpg"):
-            self.write(name, grey_png([bytes(4)] * 3))
-        self.write("C.txt", "no photograph")
         file = self.write("positions.txt",
                           "a.jpg 0 0 0\nb.jpg 1 0 0\n# d.jpg\nc.jpg 0 1 0\nC.jpg 0 1 0\n")
-        said = self.said_by(positions.check, file, self.folder)
+        said = self.said_by(positions.check, file, "images", ["a.jpg", "b.jpg", "c.jpg"])
         self.assertIn("1 of 4 names are not photographs", said)
         self.assertIn("C.jpg first", said)
 
@@ -399,9 +395,6 @@ class RunFile(InFolder):
 
 
 class ProgramCommands(InFolder):
-    def test_every_program_of_a_run_is_asked_for_its_version(self):
-        self.assertEqual(set(reconstruct_options.PROGRAMS) - set(versions.QUESTIONS), set())
-
     def test_commands(self):
         programs = Programs("bin")
         for command, words in (

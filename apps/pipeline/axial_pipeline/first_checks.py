@@ -3,7 +3,6 @@
 that they will get; names and values of --scale-from and --refine are compared with the photographs and ports."""
 
 import collections
-import csv
 import math
 import pathlib
 import re
@@ -12,6 +11,7 @@ import tempfile
 
 from . import cameras, colmap, estimates, files, lenses
 from .failure import Failure
+from .position_rows import split_fields
 from .programs import Programs, words_of
 
 # What --refine of RefinePoses takes, and the kind of port that a value needs.
@@ -73,8 +73,7 @@ def command_of(name, given):
 
 
 def check_options_of_programs(given, programs_by_option):
-    """Lets the programs parse the options that they will get. `programs_by_option`: as MORE_OPTIONS of
-    reconstruct_options.py."""
+    """Lets the programs parse the options that they will get. `programs_by_option`: as step_kinds.OPTIONS."""
     for name, program in programs_by_option.items():
         words = words_of(name, given)
         command = command_of(name, given) or [pathlib.Path(given.programs) / program]
@@ -105,15 +104,6 @@ def check_refine(given):
                           "has none")
 
 
-def fields_of(text, where):
-    """The fields of a list between commas, as libs/io/cameras/position_file.h splits them."""
-    try:
-        fields, = csv.reader([text], strict=True)
-    except (csv.Error, ValueError):
-        raise Failure(f"{where}: a double quote is not closed") from None
-    return fields
-
-
 def name_pairs(fields):
     """The pairs of names that a list of names with commas can mean."""
     return [(",".join(fields[:i]), ",".join(fields[i:-1])) for i in range(1, len(fields) - 1)]
@@ -129,7 +119,9 @@ def check_scale(given, photographs):
     if kind not in ("images", "points") or not colon:
         raise Failure(f"--scale-from {text}: must begin with images:, points: or positions:")
     where = f"--scale-from {text}"
-    fields = fields_of(rest, where)
+    fields = split_fields(rest, ",")
+    if not fields:
+        raise Failure(f"{where}: a double quote is not closed")
     if len(fields) < 3 or kind == "points" and len(fields) > 3:
         raise Failure(f"{where}: must give two ends and the distance between them in metres")
     check_length(fields[-1], where)

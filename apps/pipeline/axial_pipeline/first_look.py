@@ -5,7 +5,6 @@ that are made smaller, in a folder that exists only meanwhile.
 If all photographs would take too long, pairs of neighbours by name are looked at, evenly spread over the dive."""
 
 import array
-import collections
 import contextlib
 import dataclasses
 import os
@@ -14,10 +13,10 @@ import sqlite3
 import statistics
 import tempfile
 
-from . import colmap, database, estimates, features, files, left_out
+from . import colmap, database, estimates, features, left_out
 from .failure import Failure
 from .first_checks import PREFIX
-from .photographs import few
+from .files import few
 from .running import logged
 
 SIDE = 640            # the longer side of the photographs that are looked at [px]
@@ -63,14 +62,10 @@ def neighbours_in(names, chosen):
 def find_features(given, sizes, chosen, file):
     """Finds features in the photographs `chosen`. `file`: a new database. Returns the Features with COLMAP's
     threshold; the database gets weak features, too."""
-    folder, by_size = file.parent, collections.defaultdict(list)
-    for name in chosen:
-        by_size[sizes[name]].append(name)
+    folder, listed = file.parent, file.with_name("photographs.txt")
     command = lambda to, *more: colmap.features(to, given.images, "OPENCV", more=[*colmap.smaller(SIDE), *more])
-    for number, names in enumerate(by_size.values()):  # COLMAP skips other sizes
-        listed = folder / f"{number}.txt"
-        files.write(listed, "".join(f"{name}\n" for name in names))
-        logged(command(file, "--image_list_path", listed), folder / "logs" / f"features-{number}.log", "features")
+    features.detect({name: sizes[name] for name in chosen}, listed,
+                    lambda names: command(file, "--image_list_path", names), folder / "logs" / "features.log")
     plain = database.features(file) or {}
     features.take_weak_features(file, lambda to, names, threshold: command(
         to, *colmap.weak_features(names, threshold)), folder, tell=lambda line: None)

@@ -10,6 +10,7 @@ import sqlite3
 
 from . import database, files, positions, similar
 from .failure import Failure
+from .running import tell
 
 FEATURES = 200  # of a photograph
 # Photographs with which each one is matched: the most similar ones, the next ones by name, and the nearest.
@@ -93,7 +94,7 @@ def known_positions(file, of_positions):
     try:
         known = positions.read(of_positions, list(named.values()), tell=False)
     except Failure as failure:
-        print(f"    pairs are chosen without positions: {failure}", flush=True)
+        tell(f"pairs are chosen without positions: {failure}")
         return {}
     return {image: known[name] for image, name in named.items() if name in known}
 

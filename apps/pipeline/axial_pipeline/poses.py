@@ -5,8 +5,8 @@ import json
 import struct
 
 from . import colmap, database, files, lenses
-from .photographs import few
-from .running import logged
+from .files import few
+from .running import logged, tell
 
 RECORD = "registered.json"
 FREE = "free_lens"          # folder of the models with a lens that COLMAP calibrated
@@ -32,8 +32,8 @@ def has_sane_lens(model, file):
     begun = starts(file)
     for camera, focal in focal_lengths(model).items():
         if camera in begun and not FOCAL[0] * begun[camera] <= focal <= FOCAL[1] * begun[camera]:
-            print(f"    a model of {colmap.registered(model)} photographs is refused: its focal length ran from "
-                  f"{begun[camera]:.0f} to {focal:.0f} px", flush=True)
+            tell(f"a model of {colmap.registered(model)} photographs is refused: its focal length ran from "
+                 f"{begun[camera]:.0f} to {focal:.0f} px")
             return False
     return True
 
@@ -63,7 +63,7 @@ def take_best(file, given, out, options):
     first = colmap.best_first([models], scale_names(given))
     if not given.lens_model and (not first or first[0][1] < len(photographs)):
         count = f"{first[0][1]} of {len(photographs)} photographs have" if first else "no photograph has"
-        print(f"    {count} poses with the lens behind the port; COLMAP tries to calibrate a lens", flush=True)
+        tell(f"{count} poses with the lens behind the port; COLMAP tries to calibrate a lens")
         try_free_lens(file, given, models, options, out / "logs" / "poses-free.log")
     found = colmap.best_first([models, models / FREE], scale_names(given))
     if not found:
@@ -73,11 +73,12 @@ def take_best(file, given, out, options):
                                                      if model.parent == best.parent])
     left_out |= before
     record = {"photographs": (len(photographs) or count) + len(before), "registered": count, "left_out": left_out}
-    print_lines(lines_of(record))
+    for line in lines_of(record):
+        tell(line)
     others = [str(n) for model, n in found[1:] if model.parent == best.parent]
     if others:
-        print(f"    COLMAP could not join all images: {len(others)} more models, of {', '.join(others)} images, "
-              f"remain in {best.parent}", flush=True)
+        tell(f"COLMAP could not join all images: {len(others)} more models, of {', '.join(others)} images, "
+              f"remain in {best.parent}")
     best.rename(models / "best")
     files.write(models / RECORD, json.dumps(record))
 
@@ -121,11 +122,6 @@ def lines_of(record):
         yield f"no pose: {few(names)}: {reason}"
 
 
-def print_lines(lines):
-    for line in lines:
-        print(f"    {line}", flush=True)
-
-
 def lines_about(out):
     """lines_of() the refined model in the folder `out`, for the report. None without a record."""
     record = files.read_object(out / "colmap" / RECORD)
@@ -135,4 +131,5 @@ def lines_about(out):
 def print_changes(out):
     """Prints lines_about(), if RefinePoses gave poses to photographs that COLMAP left out."""
     if files.read_object(out / "refined" / "report.json").get("registered", {}).get("photographs"):
-        print_lines(lines_about(out))
+        for line in lines_about(out):
+            tell(line)

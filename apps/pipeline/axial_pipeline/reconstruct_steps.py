@@ -2,16 +2,15 @@
 """The steps of `reconstruct`: their commands, what they make, and what they read."""
 
 import pathlib
-import shlex
 
 from . import (cameras, colmap, database, features, left_out, lenses, masks, matching, poses, positions, start_lens,
                still_features, turns, video)
 from .option_files import find_option, has_option, read_by
-from .ownership import WRITES
 from .programs import Programs, words_of
-from .running import logged
+from .running import logged, tell, told
 from .reconstruct_options import wanted_steps
 from .run_file import write_run
+from .step_kinds import KINDS, writes_of
 from .steps import Files, Report, Step, Tiles
 
 
@@ -36,14 +35,13 @@ def look_at_features(given, features_file, command, out):
     """Finds the features of further cameras, adds weak features where there are few, and says how many there
     are, and which are at rest."""
     for number in range(2, len(given.cameras) + 1):
-        words = [str(word) for word in features_of_camera(number, command, features_file, out)]
-        print(f"    {shlex.join(words)}", flush=True)
-        logged(words, out / "logs" / f"features-{number}.log", "features")
+        logged(told(features_of_camera(number, command, features_file, out)), out / "logs" / f"features-{number}.log",
+               "features")
     if not any("peak_threshold" in word for word in words_of("features", given)):
         features.take_weak_features(features_file, lambda file, names, threshold: command(
             file, *colmap.weak_features(names, threshold)), out)
     for line in features.lines_about(features_file):
-        print(f"    {line}", flush=True)
+        tell(line)
     still_features.look(features_file, out, out / "logs" / "features.log", is_masked=bool(given.masks))
 
 
@@ -98,9 +96,6 @@ def colmap_steps(given, out):
                after=lambda: poses.take_best(file, given, out, more))
 
 
-WITH_MASKS = ("densify", "refine-mesh", "texture")  # "map" gets those of "texture"
-
-
 def refine_options(given):
     known = ["--scale-from", given.scale_from] if given.scale_from else []
     refine = ["--refine", given.refine] if given.refine else []
@@ -122,7 +117,7 @@ def mask_words(words, given_again):
 def options_for(names, given, out):
     """The words of the options --`name` for programs, with --masks for the programs that take masks."""
     words = {name: words_of(name, given) for name in names}
-    return {name: [*(masks.words(given, masks_of(given, out), own) if name in WITH_MASKS else []), *own]
+    return {name: [*(masks.words(given, masks_of(given, out), own) if KINDS[name].takes_masks else []), *own]
             for name, own in words.items()}
 
 
@@ -153,14 +148,10 @@ def whole_mesh(given, out):
     return meshes(out)[2].with_suffix(".ply")
 
 
-class MadeBefore:
-    """The files that an earlier run of the step `name` made, looked for when they are removed."""
-
-    def __init__(self, name, out):
-        self.name, self.out = name, out
-
-    def __iter__(self):
-        return (path for pattern in WRITES[self.name] for path in self.out.glob(pattern))
+def made_before(name, out):
+    """Looks, when the step `name` begins, for the files that an earlier run of it made."""
+    for pattern in writes_of(name):
+        yield from list(out.glob(pattern))
 
 
 def mesh_steps(given, out):
@@ -182,7 +173,7 @@ def mesh_steps(given, out):
         yield Step("texture", command,
                    makes=Tiles(out, f"scene_textured.tile*-{given.tiles}.glb") if given.tiles > 1
                    else Files(textured.with_suffix(".glb"), textured.with_suffix(".ply")),
-                   reads=reads_of("texture", command, given), anew=MadeBefore("texture", out))
+                   reads=reads_of("texture", command, given), anew=made_before("texture", out))
 
 
 RUN_FILE = "run.json"
@@ -235,14 +226,14 @@ def survey_steps(given, out):
         yield Step("map", command,
                    makes=Files(*(out / f"scene_map.{kind}.tif" for kind in ("dem", "ortho", "views"))),
                    reads=[*reads_of("map", command, given), *reads_of("texture", command, given)],
-                   anew=MadeBefore("map", out))  # not every command writes all of them again
+                   anew=made_before("map", out))  # not every command writes all of them again
     if "compare" in wanted:
         command = programs.compare_surveys(given.earlier, best_mesh(given, out), out / "scene",
                                            *words_about_surveys(given, scene, options["compare"]),
                                            *options["compare"])
         yield Step("compare", command, makes=out / "scene.change.json",
                    reads=[given.earlier, earlier_scene(given, scene), *reads_of("compare", command, given)],
-                   anew=MadeBefore("compare", out))
+                   anew=made_before("compare", out))
     if "page" in wanted:
         command = programs.view_scene(scene, out / "scene_dense.ply", whole, out / "page", *refractive,
                                       *words_about_results(given, out), *options["page"])
@@ -253,12 +244,6 @@ def survey_steps(given, out):
 
 def steps(given, out):
     """The steps of a run with the options `given` in the folder `out`, in order."""
-    for step in steps_without_names_of_files(given, out):
-        step.writes = WRITES[step.name]
-        yield step
-
-
-def steps_without_names_of_files(given, out):
     programs, densify = Programs(given.programs), options_for(["densify"], given, out)["densify"]
     refined, scene, cloud = out / "refined", out / "scene.mvs", out / "scene_dense.ply"
     known_positions = positions.file_of(given.scale_from)

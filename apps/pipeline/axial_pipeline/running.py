@@ -6,6 +6,7 @@ import contextlib
 import ctypes
 import os
 import pathlib
+import shlex
 import signal
 import subprocess
 import sys
@@ -83,8 +84,20 @@ def ending(code):
     return f"signal {code - 128}" if is_signal else f"exit code {code}"
 
 
+def tell(line):
+    """Prints a line about the step that runs."""
+    print(f"    {line}", flush=True)
+
+
 def name_of(command):
     return pathlib.Path(str(command[0])).name
+
+
+def told(command):
+    """The words of a command, which are printed."""
+    words = [str(word) for word in command]
+    tell(shlex.join(words))
+    return words
 
 
 def logged(command, log, name=None, excuse=None):
