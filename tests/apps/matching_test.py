@@ -3,29 +3,24 @@
 the positions in COLMAP's database."""
 
 import argparse
-import contextlib
 import itertools
-import os
 import pathlib
 import shutil
-import sqlite3
 import struct
 import subprocess
 import tempfile
 import unittest
 import unittest.mock
 
-from pipeline_folder import InFolder
-from programs import grey_png, main, run
+from colmap_databases import make_tables
+from pipeline_folder import InFolder, simulate
+from programs import grey_png, main
 
 from axial_pipeline import colmap, matching, photographs
+from axial_pipeline.database import opened, rows_of
 from axial_pipeline.exif import exif_in
 from axial_pipeline.failure import Failure
 
-# The table of COLMAP 3.8.
-IMAGES = """CREATE TABLE images (image_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL,
-    name TEXT NOT NULL UNIQUE, camera_id INTEGER NOT NULL, prior_qw REAL, prior_qx REAL, prior_qy REAL,
-    prior_qz REAL, prior_tx REAL, prior_ty REAL, prior_tz REAL)"""
 ALL = (2, 4, 6)  # tags of latitude, longitude and altitude
 
 
@@ -56,16 +51,11 @@ def check(given):
     matching.check(given, photographs.found_in(given.images).images)
 
 
-def rows(database, query):
-    with contextlib.closing(sqlite3.connect(database)) as connection:
-        return connection.execute(query).fetchall()
-
-
 def pairs(database):
     """The pairs of image names that COLMAP compared."""
-    names = dict(rows(database, "SELECT image_id, name FROM images"))
+    names = dict(rows_of(database, "SELECT image_id, name FROM images"))
     return {tuple(sorted((names[pair // 2147483647], names[pair % 2147483647])))
-            for pair, in rows(database, "SELECT pair_id FROM two_view_geometries")}
+            for pair, in rows_of(database, "SELECT pair_id FROM two_view_geometries")}
 
 
 class Matching(InFolder):
@@ -74,9 +64,7 @@ class Matching(InFolder):
     def setUp(self):
         super().setUp()
         self.knows("--SiftMatching.use_gpu --SpatialMatching.is_gps ")
-        path = unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}")
-        path.start()
-        self.addCleanup(path.stop)
+        self.put_on_path()
         for name in "abc":
             self.write(f"images/{name}.jpg", jpeg())
         self.positions = self.write("positions.txt", "a.jpg 5e5 0 0\nb.jpg 5e5 1 0\nc.jpg 5e5 3 -2\n")
@@ -100,8 +88,8 @@ class Matching(InFolder):
     def database(self, names="abc", prior=None):
         path = self.folder / "features.db"
         path.unlink(missing_ok=True)
-        with contextlib.closing(sqlite3.connect(path)) as connection, connection:
-            connection.execute(IMAGES)
+        with opened(path) as connection:
+            make_tables(connection, (4, 3))
             connection.executemany("INSERT INTO images (name, camera_id, prior_tx, prior_ty, prior_tz) "
                                    "VALUES (?, 1, ?, ?, ?)", [(f"{name}.jpg", *(prior or [None] * 3))
                                                               for name in names])
@@ -113,7 +101,7 @@ class Matching(InFolder):
     def prepared(self, given):
         """What the step says before COLMAP matches, and the positions in the database by name."""
         said = self.said_by(self.step(given).before)
-        found = rows(self.folder / "database.db", "SELECT name, prior_tx, prior_ty, prior_tz FROM images")
+        found = rows_of(self.folder / "database.db", "SELECT name, prior_tx, prior_ty, prior_tz FROM images")
         return said, {name: position for name, *position in found}
 
     def test_every_matcher_has_its_command(self):
@@ -182,7 +170,7 @@ class Matching(InFolder):
             self.step(self.given("spatial")).before()
 
     def test_a_newer_table_is_left_alone(self):
-        with contextlib.closing(sqlite3.connect(self.folder / "features.db")) as connection, connection:
+        with opened(self.folder / "features.db") as connection:
             connection.execute("CREATE TABLE images (image_id INTEGER, name TEXT)")
         self.assertEqual(self.said_by(self.step(self.given("spatial")).before), "")
 
@@ -255,10 +243,7 @@ class WithColmap(InFolder):
         folder = tempfile.TemporaryDirectory(prefix="axial_")
         cls.addClassCleanup(folder.cleanup)
         cls.scene = pathlib.Path(folder.name) / "scene"
-        made = run("SimulateUnderwater", "--preset", "transect", "--views", 8, "--width", 160, "--height",
-                   120, "--coarseness", 4, "--samples", 1, "--truth", 0, "--medium", "water", "-o",
-                   cls.scene)
-        assert made.returncode == 0, made.stderr
+        simulate(cls.scene, "transect", 8, (160, 120))
 
     def matched(self, images, scale_from=""):
         """The pairs that COLMAP compares with two neighbours of each photograph."""

@@ -7,15 +7,10 @@ import contextlib
 import io
 import json
 import math
-import os
 import random
-import subprocess
-import sys
-import unittest
-import unittest.mock
 
-from pipeline_folder import PIPELINE, InFolder
-from programs import grey_png, main
+from pipeline_folder import PIPELINE, ColmapModelCase, InFolder
+from programs import main
 
 from axial_pipeline import colmap, files, position_rows, positions, run_file, running, start_lens, steps, truth
 from axial_pipeline.failure import Failure
@@ -26,8 +21,8 @@ class ColmapCommands(InFolder):
     def words(self, help_text, function, *arguments):
         """The words of a command where `colmap ... --help` prints `help_text`."""
         self.put_script("colmap", f"echo '{help_text}'")
-        with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
-            return " ".join(map(str, function(*arguments)))
+        self.put_on_path()
+        return " ".join(map(str, function(*arguments)))
 
     def test_every_version_is_kept_off_the_graphics_card(self):
         for family in colmap.EXTRACTION:
@@ -84,20 +79,12 @@ for number in 0 1; do
 done"""
 
 
-class ColmapModelCommand(InFolder):
+class ColmapModelCommand(ColmapModelCase):
     """The command colmap-model, with a stand-in for COLMAP."""
 
     def setUp(self):
         super().setUp()
         self.put_script("bin/colmap", COLMAP)
-        for number in range(2):
-            self.write(f"images/{number}.png", grey_png([bytes(4)] * 3))
-
-    def run_it(self, *more):
-        command = [sys.executable, "-B", str(PIPELINE / "colmap-model"), "--images", "images",
-                   "--camera-model", "PINHOLE", "--camera-parameters", "1,2,3,4", "-o", "out", *more]
-        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60,
-                              env={**os.environ, "PATH": f"{self.folder}/bin:{os.environ['PATH']}"})
 
     def test_it_keeps_the_largest_model(self):
         ended = self.run_it("--max-threads", "3")

@@ -14,6 +14,7 @@ from .failure import Failure
 
 PAIR = 2147483647  # pair_id = PAIR * smaller image id + larger image id
 DESCRIPTOR = 128   # bytes: 4 x 4 cells of 8 directions
+DAMAGE = (sqlite3.Error, LookupError, TypeError, ValueError)  # of reading what is no database, or is damaged
 CELLS = 4          # along each side of a photograph, for the spread of features
 
 
@@ -31,6 +32,13 @@ def rows_of(file, query):
             return connection.execute(query).fetchall()
     except sqlite3.Error:
         return None
+
+
+def by_camera(connection):
+    """The size (width, height) [px] of each camera, and its photographs by name: pairs of id and name."""
+    for camera, *size in connection.execute("SELECT camera_id, width, height FROM cameras").fetchall():
+        yield tuple(size), connection.execute("SELECT image_id, name FROM images WHERE camera_id = ? ORDER BY name",
+                                              (camera,)).fetchall()
 
 
 def names(file):

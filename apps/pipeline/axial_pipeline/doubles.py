@@ -9,10 +9,9 @@ import collections
 import contextlib
 import hashlib
 import pathlib
-import sqlite3
 
 from . import still_features
-from .database import cells_of, keypoints_of
+from .database import DAMAGE, by_camera, cells_of, keypoints_of, opened
 from .failure import Failure
 from .photographs import LEAST
 
@@ -70,13 +69,6 @@ def is_alike(reference, other, size):
             LEAST_SPREAD * len(cells_of(reference.places(numbers), size)))
 
 
-def by_camera(connection):
-    """The size, and (number, name) of the photographs of each camera, in the order of the files' names."""
-    for camera, width, height in connection.execute("SELECT camera_id, width, height FROM cameras").fetchall():
-        images = connection.execute("SELECT image_id, name FROM images WHERE camera_id = ?", (camera,)).fetchall()
-        yield (width, height), sorted(images, key=lambda one: (pathlib.PurePath(one[1]).name, one[1]))
-
-
 def alike_in(photographs, size):
     """As alike(), for the photographs of one camera: pairs of a name and Keypoints."""
     kept, found = [], {}
@@ -95,10 +87,10 @@ def alike(file, left_out=()):
     """Photographs without motion since another one: the name of the one that is kept, by name. `file`: COLMAP's
     database with features. `left_out`: names that do not count. Nothing if `file` is no such database."""
     found = {}
-    with contextlib.suppress(sqlite3.Error, LookupError, TypeError, ValueError), \
-            contextlib.closing(sqlite3.connect(file)) as connection:
+    with contextlib.suppress(*DAMAGE), opened(file) as connection:
         for size, images in by_camera(connection):
-            images = [(image, name) for image, name in images if name not in left_out]
+            images = sorted((one for one in images if one[1] not in left_out),  # in the order of the files' names
+                            key=lambda one: (pathlib.PurePath(one[1]).name, one[1]))
             twins = alike_in(((name, keypoints_of(connection, image)) for image, name in images), size)
             sizes = collections.Counter(twins.values())
             found |= {name: twin for name, twin in twins.items() if sizes[twin] + 1 <= MOST_ALIKE * len(images)}

@@ -85,12 +85,15 @@ def check_options_of_programs(given, programs_by_option):
                           f"{reason_in(said, pathlib.Path(command[0]).name)}")
 
 
+def ports_in(housing):
+    """The ports in a housing file, by name; empty if they are not known here."""
+    ports = files.read_object(pathlib.Path(housing)).get("ports")
+    return {name: port for name, port in ports.items() if isinstance(port, dict)} if isinstance(ports, dict) else {}
+
+
 def kinds_of_ports(housing):
     """The kinds of ports in a housing file, or of the word in its place; empty if they are not known here."""
-    if housing in KINDS:
-        return {housing} - {"unknown"}
-    ports = files.read_object(pathlib.Path(housing)).get("ports")
-    return {port.get("type") for port in ports.values() if isinstance(port, dict)} if isinstance(ports, dict) else set()
+    return {housing} - {"unknown"} if housing in KINDS else {port.get("type") for port in ports_in(housing).values()}
 
 
 def check_refine(given):
@@ -151,7 +154,7 @@ def ports_in_words(housing):
     if housing in KINDS:
         yield f"{housing}: usual numbers, which the photographs correct"
         return
-    ports = files.read_object(pathlib.Path(housing)).get("ports", {})
+    ports = ports_in(housing)
     for name, port in ports.items():
         numbers = ", ".join(f"{key} {value}" for key, value in port.items()
                             if key in ("distance_m", "inner_radius_m", "n_water"))

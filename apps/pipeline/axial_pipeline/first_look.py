@@ -5,7 +5,6 @@ that are made smaller, in a folder that exists only meanwhile.
 If all photographs would take too long, pairs of neighbours by name are looked at, evenly spread over the dive."""
 
 import array
-import contextlib
 import dataclasses
 import os
 import pathlib
@@ -93,7 +92,7 @@ def share_of_cells(keypoints, numbers, size):
 def overlaps_in(file, pairs):
     """The part of both photographs that verified matches cover, by pair of names. `file`: COLMAP's database with
     matches."""
-    with contextlib.closing(sqlite3.connect(file)) as connection:
+    with database.opened(file) as connection:
         images = {name: (image, (width, height)) for name, image, width, height in connection.execute(
             "SELECT name, image_id, width, height FROM images JOIN cameras USING (camera_id)")}
         matches = {pair: data for pair, data in connection.execute("SELECT pair_id, data FROM two_view_geometries")}

@@ -2,11 +2,8 @@
 """The options --matcher and --vocabulary of `reconstruct`: which pairs of photographs COLMAP
 matches."""
 
-import contextlib
-import sqlite3
-
 from . import cascade, colmap, files, positions
-from .database import named_if_damaged
+from .database import named_if_damaged, opened
 from .failure import Failure
 from .programs import words_of
 from .running import tell
@@ -105,7 +102,7 @@ def prepare_positions(database, file):
     in the database if `file` is None. Can be repeated. Prints how many photographs have no
     position; check_positions() tells how the file is read. Does nothing to the database of a newer
     COLMAP, which has its own table for GPS positions."""
-    with contextlib.closing(sqlite3.connect(database)) as connection, connection:
+    with opened(database) as connection:
         columns = {row[1] for row in connection.execute("PRAGMA table_info(images)")}
         if "prior_tx" not in columns:
             return
