@@ -10,5 +10,6 @@ programs       commands of AxialMVS's programs
 running        running commands, with logs
 cluster, jobs  reconstruct as a workflow of jobs, for the Snakefile beside the package
 one_step       what one job of the workflow does
+step_kinds     what is known of every step before it runs
 steps          steps that are not repeated when a killed run is started again
 """

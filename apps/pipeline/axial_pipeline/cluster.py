@@ -12,7 +12,7 @@ import subprocess
 
 from . import cameras, files, jobs
 from .failure import Failure
-from .running import die_with, ending
+from .running import answer_of, die_with, ending
 from .step_kinds import ORDER
 from .steps import Records, is_done, names_from, with_chains
 
@@ -63,7 +63,7 @@ def largest_node(given):
     if given.cluster == "local":
         memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") >> 20
         return {"cpus": len(os.sched_getaffinity(0)), "memory_mb": memory}
-    listed = subprocess.run(["sinfo", "--noheader", "--format", "%c %m"], capture_output=True, text=True)
+    listed = answer_of(["sinfo", "--noheader", "--format", "%c %m"])
     # A group of different nodes is shown with the smallest number and a plus sign.
     nodes = [[int(word.rstrip("+")) for word in line.split()] for line in listed.stdout.splitlines()]
     if listed.returncode != 0 or not nodes:
@@ -85,8 +85,7 @@ def command(given, out, node):
 def cancel_jobs(out):
     """Cancels the jobs of Slurm of a run in the folder `out`. While snakemake asks for the states of
     its jobs, an interruption lets it end without cancelling them."""
-    listed = subprocess.run(["squeue", "--noheader", "--user", getpass.getuser(), "--format", "%A %j"],
-                            capture_output=True, text=True)
+    listed = answer_of(["squeue", "--noheader", "--user", getpass.getuser(), "--format", "%A %j"])
     jobs_left = [line.split(maxsplit=1) for line in listed.stdout.splitlines()]
     numbers = [number for number, name in jobs_left if name.endswith(f"-{jobs.code_of(out)}")]
     if numbers:

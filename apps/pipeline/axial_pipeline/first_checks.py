@@ -6,29 +6,24 @@ import collections
 import math
 import pathlib
 import re
-import subprocess
 import tempfile
 
 from . import cameras, colmap, estimates, files, lenses
 from .failure import Failure
 from .position_rows import split_fields
 from .programs import Programs, words_of
+from .running import answer_of
 
 # What --refine of RefinePoses takes, and the kind of port that a value needs.
 REFINED = {"normal": "flat", "distance": "flat", "centre": "dome", "thickness": "", "index": "", "focal": ""}
 ALONE = (["auto"], ["none"])  # other values of --refine
 KINDS = ("flat", "dome", "unknown")  # values of --housing instead of a file
 PREFIX = "axial_first_check_"  # of a folder that exists only during the checks
-MOST_SECONDS = 120
 
 
 def said_by(command):
     """Exit code and output of a command. The output is standard error if the command fails."""
-    try:
-        ended = subprocess.run([str(word) for word in command], capture_output=True, text=True, errors="replace",
-                               stdin=subprocess.DEVNULL, timeout=MOST_SECONDS)
-    except (OSError, subprocess.TimeoutExpired) as error:
-        return 127, str(error)
+    ended = answer_of(command)
     return ended.returncode, ended.stderr.strip() if ended.returncode else f"{ended.stdout}{ended.stderr}"
 
 

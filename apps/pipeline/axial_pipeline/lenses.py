@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Lenses in air: the files that hold them, and the lenses of photographs that were made smaller, turned or
-zoomed. The programs check lens files (check_inputs.py); here a file that they accept is read."""
+zoomed. The programs check lens files (first_checks.py); here a file that they accept is read."""
 
 import dataclasses
 import pathlib

@@ -3,9 +3,9 @@
 
 import pathlib
 import shlex
-import subprocess
 
 from .failure import Failure
+from .running import answer_of
 
 NAMES = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh", "TextureMesh",
          "MapSurface", "CompareSurveys", "ViewScene")  # of the programs that every run may need
@@ -45,11 +45,7 @@ def version_of(command):
     question = QUESTIONS.get(pathlib.Path(program).name)
     if question is None:
         return None
-    try:
-        said = subprocess.run([program, question], capture_output=True, text=True, errors="replace",
-                              stdin=subprocess.DEVNULL, timeout=MOST_SECONDS)
-    except (OSError, subprocess.TimeoutExpired):
-        return None
+    said = answer_of([program, question], MOST_SECONDS)
     lines = said.stdout.strip().splitlines()
     return lines[0].strip() if said.returncode == 0 and lines else None
 

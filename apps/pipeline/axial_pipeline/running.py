@@ -16,6 +16,7 @@ from .failure import Failure
 
 LIBC = ctypes.CDLL(None)
 PR_SET_PDEATHSIG = 1  # of <sys/prctl.h>
+MOST_SECONDS = 120  # of a short command
 LINES_SHOWN = 20  # of the log of a command that failed
 
 
@@ -82,6 +83,17 @@ def ending(code):
         return f"signal {-code}"
     is_signal = 128 < code <= 128 + signal.SIGRTMAX
     return f"signal {code - 128}" if is_signal else f"exit code {code}"
+
+
+def answer_of(command, seconds=MOST_SECONDS):
+    """A short command that has ended, with its output as text. The exit code is 127, and standard error says why, if
+    the command cannot be started or takes longer."""
+    words = [str(word) for word in command]
+    try:
+        return subprocess.run(words, capture_output=True, text=True, errors="replace", stdin=subprocess.DEVNULL,
+                              timeout=seconds)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return subprocess.CompletedProcess(words, 127, "", str(error))
 
 
 def tell(line):
