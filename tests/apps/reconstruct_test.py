@@ -40,7 +40,7 @@ class Reconstruct(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory(prefix="axial_")
         cls.scene = pathlib.Path(cls.folder.name) / "scene"
-        simulate(cls.scene, "closeup", 6, (640, 480), "--samples", 2)
+        simulate(cls.scene, "closeup", 6, (640, 480), samples=2)
         cls.positions = cls.scene / "positions.txt"
         cls.positions.write_text("".join(camera_centres(cls.scene / "sparse" / "images.txt")))
 
