@@ -34,7 +34,7 @@ def matched(brought, matcher, out):
     run_all(todo[:number + 1], out)
     seconds = cpu_seconds() - begin
     run_all(todo, out)
-    return seconds, colmap.names_in(out / "colmap" / "best")
+    return seconds, set(colmap.images_in(out / "colmap" / "best"))
 
 
 @point(f"a survey of {VIEWS} photographs in rows, 480 pixels wide: --matcher cascade takes at most a third of the CPU "

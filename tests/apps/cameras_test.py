@@ -7,18 +7,17 @@ import json
 import pathlib
 import random
 import shutil
-import sqlite3
 import struct
 import subprocess
-import sys
 import unittest
 
-from pipeline_folder import InFolder
-from programs import BIN, ProgramTest, grey_png, main, read, write
-from stand_ins import SCRIPT, StandIns
+from colmap_databases import SHARP, Databases
+from pipeline_folder import InFolder, reconstruct_command, simulate
+from programs import ProgramTest, grey_png, main, read, write
+from stand_ins import StandIns
 from support import colmap_text
 
-from axial_pipeline import cameras, exif, features, lenses, photographs, turns
+from axial_pipeline import cameras, database, exif, features, lenses, photographs, turns
 from axial_pipeline.failure import Failure
 
 NUMBERS = {"OPENCV": (0.1, -0.05, 0.01, -0.02), "THIN_PRISM_FISHEYE": (0.1, -0.05, 0.01, -0.02, 0, 0, 0.003, 0.004)}
@@ -262,16 +261,13 @@ class Turned(CamerasCase):
         self.assertTrue((self.folder / "cameras" / "lenses.txt").exists())
 
 
-class WeakFeatures(InFolder):
+class WeakFeatures(Databases):
     def test_photographs_of_each_size_are_given_to_colmap_by_themselves(self):
         """COLMAP skips photographs of another size than the first one. With each of three thresholds."""
-        file = self.folder / "features.db"
-        with sqlite3.connect(file) as base:
-            base.executescript("""CREATE TABLE cameras (camera_id INTEGER, width INTEGER, height INTEGER);
-                CREATE TABLE images (image_id INTEGER, name TEXT, camera_id INTEGER);
-                CREATE TABLE keypoints (image_id INTEGER, rows INTEGER, cols INTEGER, data BLOB);
-                INSERT INTO cameras VALUES (1, 480, 360), (2, 240, 180);
-                INSERT INTO images VALUES (1, 'a', 1), (2, 'b', 2), (3, 'c', 1);""")
+        file = self.database({name: (0, SHARP) for name in "abc"})
+        with database.opened(file) as connection:
+            connection.execute("INSERT INTO cameras VALUES (2, 4, 240, 180, NULL, 0)")
+            connection.execute("UPDATE images SET camera_id = 2 WHERE name = 'b'")
         self.put_script("detector", f"cat $1 >> {self.folder}/seen; echo . >> {self.folder}/seen")
         (self.folder / "logs").mkdir()
         self.said_by(features.take_weak_features, file, lambda _, names, __: [self.folder / "detector", names],
@@ -282,35 +278,30 @@ class WeakFeatures(InFolder):
 class InARun(StandIns):
     def setUp(self):
         super().setUp()
-        (self.folder / "lens").write_text("1 PINHOLE 4 3 9 9 2 1.5\n")
+        self.write("lens", "1 PINHOLE 4 3 9 9 2 1.5\n")
         for number in range(3, 5):
-            (self.folder / "images" / f"{number}.png").write_bytes(grey_png([bytes(8)] * 6))
-
-    def succeeds(self, *options):
-        ended = self.ended(*options)
-        self.assertEqual((ended.returncode, ended.stderr), (0, ""))
-        return ended.stdout
+            self.write(f"images/{number}.png", grey_png([bytes(8)] * 6))
 
     def test_several_sizes_reach_the_programs(self):
         said = self.succeeds("--until", "poses")
         self.assertIn("2 photographs are of another size (3.png, 4.png)", said)
-        commands = (self.folder / "commands").read_text().splitlines()
+        commands = self.commands()
         lists = [line.split("--image_list_path ")[1] for line in commands if "feature_extractor" in line]
         self.assertEqual(lists, [f"{self.folder}/out/cameras/{number}.txt" for number in (1, 2)])
         self.assertEqual(sum(f"--lens {self.folder}/out/cameras/lenses.txt" in line for line in commands), 2)
         self.assertIn("- 2 photographs are of another size", (self.folder / "out" / "report.md").read_text())
-        self.assertEqual(self.succeeds("--until", "poses").count("done before"), 5)
+        self.assertEqual(self.done_before("--until", "poses"), 5)
 
     def test_a_photograph_without_a_lens_reaches_no_program(self):
-        (self.folder / "images" / "5.png").write_bytes(grey_png([bytes(9)] * 4))
+        self.write("images/5.png", grey_png([bytes(9)] * 4))
         self.assertIn("warning: 1 photographs are left out (5.png)", self.succeeds("--until", "poses"))
         listed = "".join((self.folder / "out" / "cameras" / f"{number}.txt").read_text() for number in (1, 2))
         self.assertEqual(listed.split(), [f"{number}.png" for number in range(5)])
 
     def test_a_changed_lens_is_noticed(self):
         self.succeeds("--until", "poses")
-        (self.folder / "lens").write_text("1 PINHOLE 4 3 8 8 2 1.5\n")
-        self.assertEqual(self.succeeds("--until", "poses").count("done before"), 0)
+        self.write("lens", "1 PINHOLE 4 3 8 8 2 1.5\n")
+        self.assertEqual(self.done_before("--until", "poses"), 0)
         self.assertIn("\n2 PINHOLE 8 6 16.0", (self.folder / "out" / "cameras" / "lenses.txt").read_text())
 
     def test_jobs_of_a_cluster_have_the_cameras(self):
@@ -326,24 +317,19 @@ class TwoSizes(ProgramTest):
     """A dive whose photographs have two sizes, from the photographs to the cloud. Both sizes are simulated with
     the same camera."""
 
-    def simulate(self, width):
-        self.succeeds("SimulateUnderwater", "--preset", "closeup", "--views", 6, "--width", width, "--height",
-                      width * 3 // 4, "--coarseness", 4, "--samples", 1, "--truth", 0, "--medium", "water",
-                      "--tilt-degrees", 2, "-o", self.path(str(width)))
-
     def test_the_lens_of_one_size_serves_both(self):
         for width in (480, 400):
-            self.simulate(width)
+            simulate(self.path(str(width)), "closeup", 6, (width, width * 3 // 4), "--tilt-degrees", 2)
         for number in range(3):
             name = f"000{number}.jpg"
             shutil.copyfile(self.path("400", "water", name), self.path("480", "water", name))
         images = pathlib.Path(self.path("480", "sparse", "images.txt"))
         write(self.path("positions.txt"), colmap_text.positions(images.parent))
-        ended = subprocess.run(
-            [sys.executable, "-B", str(SCRIPT), "--scale-from", f"positions:{self.path('positions.txt')}",
-             "--images", self.path("480", "water"), "--lens",
-             self.path("480", "sparse", "cameras.txt"), "--housing", self.path("480", "housing.json"), "-o",
-             self.path("out"), "--until", "cloud", "--programs", BIN], capture_output=True, text=True, timeout=600)
+        command = reconstruct_command(
+            "--scale-from", f"positions:{self.path('positions.txt')}", "--until", "cloud",
+            source=("--images", self.path("480", "water")), lens=self.path("480", "sparse", "cameras.txt"),
+            housing=self.path("480", "housing.json"), out=self.path("out"))
+        ended = subprocess.run(command, capture_output=True, text=True, timeout=600)
         self.assertEqual((ended.returncode, ended.stderr), (0, ""), ended.stdout)
         self.assertIn("3 photographs are of another size", ended.stdout)
         self.assertIn("6 of 6 photographs have poses", ended.stdout)

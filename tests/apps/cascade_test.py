@@ -8,35 +8,22 @@ import contextlib
 import fnmatch
 import functools
 import os
-import pathlib
 import random
 import shutil
-import sqlite3
 import subprocess
 import sys
-import tempfile
 import unittest
 import unittest.mock
 
-from pipeline_folder import InFolder
-from programs import main, run
+from colmap_databases import add_photograph, make_tables
+from pipeline_folder import InFolder, simulate
+from programs import main
 from stand_ins import StandIns, photograph
 
-from axial_pipeline import cascade, colmap, database, matching, overview, ownership, similar, steps
+from axial_pipeline import cascade, colmap, database, matching, overview, similar, step_kinds, steps
 from axial_pipeline.failure import Failure
 
 SIZE, FEATURES = (80, 80), 400  # of a photograph
-TABLES = """PRAGMA user_version = 3800;
-CREATE TABLE cameras (camera_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, model INTEGER NOT NULL,
-    width INTEGER NOT NULL, height INTEGER NOT NULL, params BLOB, prior_focal_length INTEGER NOT NULL);
-CREATE TABLE images (image_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, name TEXT NOT NULL UNIQUE,
-    camera_id INTEGER NOT NULL, prior_tx REAL, prior_ty REAL, prior_tz REAL);
-CREATE UNIQUE INDEX index_name ON images(name);
-CREATE TABLE keypoints (image_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER, cols INTEGER, data BLOB);
-CREATE TABLE descriptors (image_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER, cols INTEGER, data BLOB);
-CREATE TABLE matches (pair_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER, cols INTEGER, data BLOB);
-CREATE TABLE two_view_geometries (pair_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER, cols INTEGER, data BLOB);
-INSERT INTO cameras VALUES (1, 4, 80, 80, NULL, 1);"""
 # Matches equal descriptors. Writes a line for each pair that it matches into the file `matched`, and its options
 # into the file `called`. Fails in the middle of a list for the real database while there is a file `fail`.
 COLMAP = """#!{python}
@@ -73,7 +60,7 @@ connection.commit()
 
 @functools.cache
 def descriptor(number):
-    return random.Random(number).randbytes(similar.LENGTH)
+    return random.Random(number).randbytes(database.DESCRIPTOR)
 
 
 class WithStandIn(InFolder):
@@ -83,31 +70,26 @@ class WithStandIn(InFolder):
     def setUp(self):
         super().setUp()
         self.write("colmap", COLMAP.format(python=sys.executable)).chmod(0o755)
-        path = unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}")
-        path.start()
-        self.addCleanup(path.stop)
+        self.put_on_path()
         self.addCleanup(os.chdir, os.getcwd())
         os.chdir(self.folder)
         self.features, self.full = self.folder / "features.db", self.folder / "database.db"
 
     def photograph(self, connection, image, points, name=None, is_large=lambda point: point % 4 == 0):
         """Adds a photograph that sees `points`, the numbers of columns of ten points each."""
-        connection.execute("INSERT INTO images (image_id, name, camera_id) VALUES (?, ?, 1)",
-                           (image, name or f"dive 1/{image:03}.jpg"))
         numbers = [10 * column + k for column in points for k in range(10)]
         keypoints = array.array("f")
         for place, column in enumerate(points):
             for k in range(10):
                 keypoints.extend((SIZE[0] * place / len(points), 8 * k + 1,
                                   9 if is_large(10 * column + k) else 2, 0))
-        for table, columns, data in (("keypoints", 4, keypoints.tobytes()),
-                                     ("descriptors", 128, b"".join(map(descriptor, numbers)))):
-            connection.execute(f"INSERT INTO {table} VALUES (?, ?, ?, ?)", (image, len(numbers), columns, data))
+        add_photograph(connection, image, name or f"dive 1/{image:03}.jpg", 4, keypoints.tobytes(),
+                       b"".join(map(descriptor, numbers)))
 
     def track(self, count=36, **more):
         self.features.unlink(missing_ok=True)
         with database.opened(self.features) as connection:
-            connection.executescript(TABLES)
+            make_tables(connection, SIZE)
             for image in range(1, count + 1):
                 self.photograph(connection, image, range(4 * image, 4 * image + 16), **more)
 
@@ -162,7 +144,7 @@ class Steps(WithStandIn):
         """Both halves of the track see the same points only in photographs 17 to 20, and there only small features.
         Photographs 18 and 19 follow each other; photographs 17 and 19 see the same part of 18."""
         with database.opened(self.features) as connection:
-            connection.executescript(TABLES)
+            make_tables(connection, SIZE)
             for image in range(1, 37):
                 first = 4 * image if image < 19 else 1000 + 4 * image
                 points = [*range(first, first + 16), *(range(500, 504) if image in (17, 18, 19, 20) else ())]
@@ -205,12 +187,13 @@ class Steps(WithStandIn):
         self.assertTrue({self.full, *cascade.files_beside(self.full)} <= set(step.changed))
 
     def test_all_files_belong_to_the_step(self):
+        patterns = step_kinds.KINDS["matches"].writes
         for path in [self.full, *cascade.files_beside(self.full)]:
-            self.assertTrue(any(fnmatch.fnmatchcase(path.name, one) for one in ownership.WRITES["matches"]), path)
+            self.assertTrue(any(fnmatch.fnmatchcase(path.name, one) for one in patterns), path)
 
     def test_nothing_alike_is_tried_with_neighbours_by_name(self):
         with database.opened(self.features) as connection:
-            connection.executescript(TABLES)
+            make_tables(connection, SIZE)
             for image in range(1, 6):
                 self.photograph(connection, image, range(100 * image, 100 * image + 16))
         with unittest.mock.patch.object(overview, "BY_NAME", 1), unittest.mock.patch.object(cascade, "FURTHER", 0):
@@ -275,11 +258,11 @@ class Overview(WithStandIn):
         self.assertEqual(database.names(self.features)[1], "dive 1/001.jpg")
 
     def test_scales_are_those_of_all_forms_of_keypoints(self):
-        affine = array.array("f", [0, 0, 1, 0, 0, 1, 0, 0, 3, 0, 0, -3, 0, 0, 0, 2, 2, 0]).tobytes()
-        self.assertEqual(overview.largest(6, affine, 2), [1, 2])
-        plain = array.array("f", [0, 0, 1, 9, 0, 0, 2, 0, 0, 0, 2, 0]).tobytes()
-        self.assertEqual(overview.largest(4, plain, 2), [1, 2])
-        self.assertEqual(overview.largest(2, array.array("f", [0, 0, 1, 1]).tobytes(), 1), [0])
+        for columns, numbers, coarsest in ((6, [0, 0, 1, 0, 0, 1, 0, 0, 3, 0, 0, -3, 0, 0, 0, 2, 2, 0], [1, 2]),
+                                           (4, [0, 0, 1, 9, 0, 0, 2, 0, 0, 0, 2, 0], [1, 2]),
+                                           (2, [0, 0, 1, 1], [0, 1])):
+            scales = database.scales_in(database.columns_in(array.array("f", numbers).tobytes(), columns))
+            self.assertEqual(database.coarsest(scales, 2), coarsest)
 
     def test_candidates_are_alike_near_or_follow_each_other(self):
         named = {5: "a", 4: "b", 3: "c", 2: "d", 1: "e"}
@@ -320,10 +303,10 @@ class Choice(StandIns):
 
     def test_thirty_photographs_are_matched_in_a_cascade(self):
         for number in range(3, 29):
-            (self.folder / "images" / f"{number}.png").write_bytes(photograph(number))
-        self.assertEqual(self.ended("--until", "poses").returncode, 0)
-        self.assertIn("colmap exhaustive_matcher ", (self.folder / "commands").read_text())
-        (self.folder / "images" / "29.png").write_bytes(photograph(29))
+            self.write(f"images/{number}.png", photograph(number))
+        self.succeeds("--until", "poses")
+        self.assertIn("colmap exhaustive_matcher ", "\n".join(self.commands()))
+        self.write("images/29.png", photograph(29))
         ended = self.ended("--until", "poses")
         self.assertIn(f"colmap matches_importer --database_path {self.folder}/out/overview.db", ended.stdout)
         self.assertIn("out/features.db: is not a database of COLMAP", ended.stderr)  # of the stand-in
@@ -335,14 +318,10 @@ class WithColmap(InFolder):
     """COLMAP reads the overview and the lists."""
 
     def test_a_transect_is_matched(self):
-        with tempfile.TemporaryDirectory(prefix="axial_") as folder:
-            scene = pathlib.Path(folder) / "scene"
-            made = run("SimulateUnderwater", "--preset", "transect", "--views", 8, "--width", 160, "--height", 120,
-                       "--coarseness", 4, "--samples", 1, "--truth", 0, "--medium", "water", "-o", scene)
-            self.assertEqual(made.returncode, 0, made.stderr)
-            features, full = self.folder / "features.db", self.folder / "database.db"
-            subprocess.run([str(word) for word in colmap.features(features, scene / "water", "PINHOLE")], check=True,
-                           capture_output=True)
+        features, full = self.folder / "features.db", self.folder / "database.db"
+        simulate(self.folder / "scene", "transect", 8, (160, 120))
+        subprocess.run([str(word) for word in colmap.features(features, self.folder / "scene" / "water", "PINHOLE")],
+                       check=True, capture_output=True)
         names = database.names(features)
         given = argparse.Namespace(matches="", matcher="cascade", scale_from="", vocabulary="", images="")
         with unittest.mock.patch.object(overview, "ALL", 4):

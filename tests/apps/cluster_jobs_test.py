@@ -3,22 +3,18 @@
 
 import argparse
 import json
-import os
-import unittest.mock
 
 from pipeline_folder import InFolder
 from programs import main
 
-from axial_pipeline import cluster, jobs, one_step, ownership, reconstruct_options, reconstruct_steps, steps
+from axial_pipeline import cluster, jobs, one_step, reconstruct_options, reconstruct_steps, step_kinds, steps
 from axial_pipeline.failure import Failure
 
 
 class SlurmCommands(InFolder):
     def setUp(self):
         super().setUp()
-        path = unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}")
-        path.start()
-        self.addCleanup(path.stop)
+        self.put_on_path()
 
     def test_jobs_of_this_run_are_cancelled(self):
         mine, other = jobs.code_of("/out"), jobs.code_of("/other")
@@ -43,9 +39,13 @@ class SlurmCommands(InFolder):
 
 
 class Jobs(InFolder):
+    def setUp(self):
+        super().setUp()
+        self.put_on_path()
+        self.put_script("colmap", "exit 0")
+
     def survey(self, images=2, **more):
         """The jobs of a run with stand-ins for COLMAP and for the plan."""
-        self.put_script("colmap", "exit 0")
         lens = self.write("cameras.txt", "1 PINHOLE 640 480 500 500 320 240\n")
         plan = {"parts": 3, "stages": ["photometric", "geometric1"], "threads": 16,
                 "per_part": {stage: {"cpu_seconds": 9600, "memory_mb": 1000}
@@ -61,12 +61,8 @@ class Jobs(InFolder):
                  "map": "", "compare": "", "page": "",
                  "tiles": 1, "until": "cloud", "without": "",
                  "earlier": "", "truth": "", "programs": "bin", "masks": "", "ignore_mask_label": "", **more}
-        with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
-            return jobs.Survey({"given": given, "images": images,
-                                "node": {"cpus": 64, "memory_mb": 10**6}}, reconstruct_steps.steps)
-
-    def test_every_step_asks_for_something(self):
-        self.assertEqual(set(ownership.WRITES), set(jobs.NEEDS) - {"plan"})
+        return jobs.Survey({"given": given, "images": images,
+                            "node": {"cpus": 64, "memory_mb": 10**6}}, reconstruct_steps.steps)
 
     def test_programs_that_plan_their_memory_keep_to_their_job(self):
         self.assertEqual(one_step.limits_of(["bin/CompareSurveys", "--max-threads=1"], 2, 1000),
@@ -141,7 +137,7 @@ class Jobs(InFolder):
         step, _ = self.survey(matcher="cascade").step("matches")
         self.assertEqual(step.command[:4], ["colmap", "matches_importer", "--database_path",
                                             str(self.folder / "overview.db")])
-        self.assertEqual(step.writes, ownership.WRITES["matches"])
+        self.assertEqual(step.writes, step_kinds.KINDS["matches"].writes)
 
     def test_time_of_matching_grows_with_the_pairs(self):
         # 499,500 pairs of 0.9 s on 16 processors, twice: 936.6 minutes

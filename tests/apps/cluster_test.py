@@ -7,15 +7,14 @@ import pathlib
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 import unittest
 
 import small_slurm
-from programs import BIN, main, run
+from pipeline_folder import reconstruct_command, simulate
+from programs import BIN, main
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
 RESULTS = ("scene_dense.mvs", "scene_dense.ply", "scene_dense_mesh.ply", "scene_dense_refined.ply",
            *(f"scene_textured.tile{tile}-2.{kind}" for tile in (1, 2) for kind in ("glb", "ply")),
            "scene_map.dem.tif", "scene_map.ortho.tif")
@@ -85,9 +84,7 @@ class Survey(unittest.TestCase):
         cls.addClassCleanup(keeper.cleanup)
         cls.folder = pathlib.Path(keeper.name).resolve()
         scene = cls.folder / "scene"
-        made = run("SimulateUnderwater", "--preset", "survey", "--views", 60, "--width", 160, "--height",
-                   120, "--coarseness", 4, "--samples", 1, "--truth", 0, "--medium", "water", "-o", scene)
-        assert made.returncode == 0, made.stderr
+        simulate(scene, "survey", 60, (160, 120))
         thinned(scene / "sparse", cls.folder / "model", 60)
         cls.programs = cls.folder / "bin"
         cls.programs.mkdir()
@@ -104,12 +101,12 @@ class Survey(unittest.TestCase):
     @classmethod
     def start(cls, out, *more, **process):
         scene = cls.folder / "scene"
-        return subprocess.Popen(
-            [sys.executable, str(SCRIPT), "--images", str(scene / "water"), "--lens",
-             str(scene / "sparse" / "cameras.txt"), "--housing", str(scene / "housing.json"),
-             "-o", out, "--matcher", "exhaustive", "--refine-poses=--poses known", f"--densify={DENSIFY}", "--tiles", "2",
-             "--until", "map", "--programs", str(cls.programs), *more], cwd=cls.folder, env=cls.environment, text=True,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **process)
+        command = reconstruct_command(
+            "--matcher", "exhaustive", "--refine-poses=--poses known", f"--densify={DENSIFY}", "--tiles", 2, "--until",
+            "map", *more, source=("--images", scene / "water"), lens=scene / "sparse" / "cameras.txt",
+            housing=scene / "housing.json", out=out, programs=cls.programs)
+        return subprocess.Popen(command, cwd=cls.folder, env=cls.environment, text=True, stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, **process)
 
     @classmethod
     def reconstruct(cls, out, *more):

@@ -1,13 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Databases and models of COLMAP that are written by hand."""
 
-import contextlib
 import random
-import sqlite3
 import struct
 
 from pipeline_folder import InFolder
 
+from axial_pipeline.database import DESCRIPTOR, opened
+
+# The tables of COLMAP 3.8 that are read.
+TABLES = """PRAGMA user_version = 3800;
+CREATE TABLE cameras (camera_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, model INTEGER NOT NULL,
+    width INTEGER NOT NULL, height INTEGER NOT NULL, params BLOB, prior_focal_length INTEGER NOT NULL);
+CREATE TABLE images (image_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, name TEXT NOT NULL UNIQUE,
+    camera_id INTEGER NOT NULL, prior_tx REAL, prior_ty REAL, prior_tz REAL);
+CREATE UNIQUE INDEX index_name ON images(name);
+CREATE TABLE keypoints (image_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER, cols INTEGER, data BLOB);
+CREATE TABLE descriptors (image_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER, cols INTEGER, data BLOB);
+CREATE TABLE matches (pair_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER, cols INTEGER, data BLOB);
+CREATE TABLE two_view_geometries (pair_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER, cols INTEGER, data BLOB);"""
 SHARP, BLURRED = 0.93, 3.4  # scales of the finest features [px]
 
 
@@ -21,26 +32,29 @@ def keypoints(count, finest, seed=1):
     return struct.pack(f"<{len(rows)}f", *rows)
 
 
+def make_tables(connection, size, parameters=None):
+    """The tables of a new database, with a camera of this size (width, height) [px]."""
+    connection.executescript(TABLES)
+    connection.execute("INSERT INTO cameras VALUES (1, 4, ?, ?, ?, 1)", (*size, parameters))
+
+
+def add_photograph(connection, image, name, columns, keypoints, descriptors):
+    """Adds a photograph with its features. `columns`: numbers of a feature in `keypoints`."""
+    connection.execute("INSERT INTO images (image_id, name, camera_id) VALUES (?, ?, 1)", (image, name))
+    for table, width, data in (("keypoints", columns, keypoints), ("descriptors", DESCRIPTOR, descriptors)):
+        connection.execute(f"INSERT INTO {table} VALUES (?, ?, ?, ?)",
+                           (image, len(descriptors) // DESCRIPTOR, width, data))
+
+
 class Databases(InFolder):
     def database(self, photographs, name="features.db"):
         """`photographs`: the number of features and their finest scale, by name."""
         file = self.folder / name
-        with contextlib.closing(sqlite3.connect(file)) as connection, connection:
-            connection.executescript(
-                "CREATE TABLE cameras (camera_id INTEGER PRIMARY KEY, model INTEGER, width INTEGER, height INTEGER,"
-                " params BLOB, prior_focal_length INTEGER);"
-                "CREATE TABLE images (image_id INTEGER PRIMARY KEY, name TEXT, camera_id INTEGER);"
-                "CREATE TABLE keypoints (image_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER, data BLOB);"
-                "CREATE TABLE descriptors (image_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER, data BLOB);"
-                "CREATE TABLE two_view_geometries (pair_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER,"
-                " data BLOB);")
-            connection.execute("INSERT INTO cameras VALUES (1, 4, 480, 360, ?, 0)",
-                               (struct.pack("<8d", 400, 400, 240, 180, 0, 0, 0, 0),))
+        with opened(file) as connection:
+            make_tables(connection, (480, 360), struct.pack("<8d", 400, 400, 240, 180, 0, 0, 0, 0))
             for number, (photograph, (count, finest)) in enumerate(photographs.items(), 1):
-                connection.execute("INSERT INTO images VALUES (?, ?, 1)", (number, photograph))
-                connection.execute("INSERT INTO keypoints VALUES (?, ?, 6, ?)",
-                                   (number, count, keypoints(count, finest, number)))
-                connection.execute("INSERT INTO descriptors VALUES (?, ?, 128, ?)", (number, count, bytes(128 * count)))
+                add_photograph(connection, number, photograph, 6, keypoints(count, finest, number),
+                               bytes(DESCRIPTOR * count))
         return file
 
     def model(self, folder, names, focal=400):

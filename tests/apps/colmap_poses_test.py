@@ -10,7 +10,7 @@ import unittest.mock
 from colmap_databases import BLURRED, SHARP, Databases
 from programs import main
 
-from axial_pipeline import colmap, database, features, left_out, poses, start_lens
+from axial_pipeline import colmap, database, features, left_out, lenses, poses, start_lens
 from axial_pipeline.failure import Failure
 
 class Features(Databases):
@@ -100,15 +100,15 @@ class Features(Databases):
 class Lens(Databases):
     def test_the_lens_behind_the_port_is_that_of_the_cameras(self):
         file = self.database({"a.jpg": (9, SHARP)})
-        lenses = {1: (480, 360, "OPENCV_FISHEYE", [380, 381, 240, 180, 0.1, 0.2, 0.3, 0.4])}
-        database.set_lenses(file, lambda *camera: start_lens.lens_for(lenses, *camera))
+        found = [lenses.Lens(1, "OPENCV_FISHEYE", (480, 360), (380, 381, 240, 180, 0.1, 0.2, 0.3, 0.4))]
+        database.set_lenses(file, lambda *camera: start_lens.lens_for(found, *camera))
         rows = database.rows_of(file, "SELECT model, params, prior_focal_length FROM cameras")
         self.assertEqual(rows, [(5, struct.pack("<8d", 380, 381, 240, 180, 0.1, 0.2, 0.3, 0.4), 1)])
 
     def test_a_camera_of_another_size_keeps_its_lens(self):
-        lenses = {1: (640, 480, "OPENCV", [1] * 8)}
-        self.assertIsNone(start_lens.lens_for(lenses, 1, 480, 360))
-        two = {1: (480, 360, "OPENCV", [1] * 8), 2: (480, 360, "OPENCV", [2] * 8)}
+        lens = lambda number, size: lenses.Lens(number, "OPENCV", size, (number,) * 8)
+        self.assertIsNone(start_lens.lens_for([lens(1, (640, 480))], 1, 480, 360))
+        two = [lens(1, (480, 360)), lens(2, (480, 360))]
         self.assertEqual(start_lens.lens_for(two, 2, 480, 360), ("OPENCV", [2] * 8))
         self.assertIsNone(start_lens.lens_for(two, 3, 480, 360))
 
@@ -140,7 +140,7 @@ class Poses(Databases):
         said = self.best(self.given(), lambda folder: self.model(folder / "0", self.NAMES[:3], 500))
         self.assertIn("3 of 4 photographs have poses", said)
         self.assertIn("d.jpg: 12 features", said)
-        self.assertEqual(colmap.names_in(self.folder / "colmap" / "best"), set(self.NAMES[:3]))
+        self.assertEqual(set(colmap.images_in(self.folder / "colmap" / "best")), set(self.NAMES[:3]))
 
     def test_photographs_that_were_left_out_are_counted_and_named(self):
         self.database({**dict.fromkeys(self.NAMES, (2000, SHARP)), "e.jpg": (2000, SHARP)})
@@ -175,13 +175,13 @@ class Poses(Databases):
     def test_of_equal_models_the_fixed_lens_counts(self):
         self.model(self.folder / "colmap" / "0", self.NAMES[:2])
         self.best(self.given(), lambda folder: self.model(folder / "0", self.NAMES[2:]))
-        self.assertEqual(colmap.names_in(self.folder / "colmap" / "best"), {"a.jpg", "b.jpg"})
+        self.assertEqual(set(colmap.images_in(self.folder / "colmap" / "best")), {"a.jpg", "b.jpg"})
 
     def test_of_equal_places_the_one_with_the_known_length_counts(self):
         for number, names in enumerate((self.NAMES[:2], self.NAMES[2:])):
             self.model(self.folder / "colmap" / str(number), names)
         said = self.best(self.given(lens_model="OPENCV", scale_from="images:c.jpg,d.jpg,0.5"))
-        self.assertEqual(colmap.names_in(self.folder / "colmap" / "best"), {"c.jpg", "d.jpg"})
+        self.assertEqual(set(colmap.images_in(self.folder / "colmap" / "best")), {"c.jpg", "d.jpg"})
         self.assertIn("could not join all images: 1 more models, of 2 images", said)
         self.assertIn("a.jpg, b.jpg: in another model, of 2 photographs", said)
 
@@ -193,7 +193,7 @@ class Poses(Databases):
     def test_a_damaged_model_has_no_names(self):
         model = self.model(self.folder / "colmap" / "0", self.NAMES)
         (model / "images.bin").write_bytes((model / "images.bin").read_bytes()[:-30])
-        self.assertEqual(colmap.names_in(model), set())
+        self.assertEqual(colmap.images_in(model), {})
 
 
 if __name__ == "__main__":

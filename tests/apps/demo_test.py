@@ -9,16 +9,16 @@ import unittest.mock
 from pipeline_folder import InFolder
 from programs import main
 
-from axial_pipeline import demo, demo_mesh, demo_page, demo_survey, demo_table, truth
+from axial_pipeline import demo, demo_page, demo_runs, demo_table, truth
 from axial_pipeline.programs import Programs
 
 
 class Demo(InFolder):
     def test_a_depth_map_has_the_number_of_its_image(self):
-        images = self.write("images.txt", "# 1 2 3\n6 1 0 0 0 0 0 0 1 0005.jpg\n"
-                            "1 2 3 4 5 6 7 8 9\n7 1 0 0 0 0 0 0 1 0006.jpg\n\n")
-        self.assertEqual(demo.depth_map_number(images, "0005.jpg"), 5)
-        self.assertIsNone(demo.depth_map_number(images, "0004.jpg"))
+        self.write("images.txt", "# 1 2 3\n6 1 0 0 0 0 0 0 1 0005.jpg\n"
+                   "1 2 3 4 5 6 7 8 9\n7 1 0 0 0 0 0 0 1 0006.jpg\n\n")
+        self.assertEqual(demo_runs.depth_map_of(self.folder, "0005.jpg"), "depth0005.dmap")
+        self.assertIsNone(demo_runs.depth_map_of(self.folder, "0004.jpg"))
 
     def test_truth_is_made_once_by_each_program(self):
         programs, made = Programs(self.folder), self.folder / "made"
@@ -33,7 +33,7 @@ class Demo(InFolder):
         row = {"mark": "(a)", "title": "In air", "points": 12345, "mean_m": 4e-4, "median_m": 3e-4,
                "rms_m": 5e-4, "tolerance_m": 0.002, "f_score": 0.8, "seconds": 9.5}
         lines = demo_table.text_table(
-            demo_table.table([row, {**row, "title": "Elsewhere"}])).splitlines()
+            demo_table.of_clouds([row, {**row, "title": "Elsewhere"}])).splitlines()
         self.assertEqual(len(lines), 4)
         self.assertEqual(len(set(map(len, lines))), 1)
         self.assertIn("12,345", lines[2])
@@ -60,11 +60,11 @@ class Demo(InFolder):
         photograph = self.write("water/0005.jpg", b"photograph")
         rows = demo_table.load(self.folder)
         lines = [*rows, demo_table.load_best_fit(self.folder)]
-        meshes = demo_mesh.load(rows, demo.MESHES)
+        meshes = demo_table.load_meshes(rows, demo.MESHES)
         self.write("refractive_page/index.html", "")
         self.write("surveys.change.json", json.dumps({"area_changed": 0.0123, "area_compared": 1}))
         page = demo_page.page(rows, lines, meshes, photograph,
-                              demo_survey.section("refractive", self.folder), scene="closeup",
+                              demo_page.survey("refractive", self.folder), scene="closeup",
                               description="A scene.", size="half")
         for content in (b"cloud", b"depth", b"textured", b"errors", b"photograph"):
             self.assertIn(base64.b64encode(content).decode(), page)
@@ -72,19 +72,19 @@ class Demo(InFolder):
             self.assertIn(f"<td>{number}</td>", page)
         self.assertIn('href="refractive_page/index.html"', page)
         self.assertIn("1.23 %", page)
-        told = json.loads(demo_table.json_table(lines, demo_mesh.kept(meshes), "closeup", "half"))
+        told = json.loads(demo_table.json_table(lines, meshes, "closeup", "half"))
         self.assertEqual([mesh["psnr_db"] for mesh in told["meshes"]], [32.14, 32.14])
         self.assertEqual(len(told["runs"]), 4)
 
     def test_one_view_is_left_out_of_texturing(self):
         commands = []
-        with unittest.mock.patch.object(demo_mesh, "shown", commands.append):
-            made = demo.Demo(unittest.mock.Mock(scene="closeup", size="half", seconds=0))
+        with unittest.mock.patch.object(demo_runs, "shown", commands.append):
+            made = demo_runs.Demo("closeup", "half", 0)
             made.work, made.data = self.folder, self.folder
             for name in ("0004", "0005", "0006"):
                 self.write(f"water/{name}.jpg", "")
             self.write("refractive/scene_dense.mvs", "")
-            demo_mesh.make_mesh(made, "refractive", "housing.json")
+            made.make_mesh("refractive")
         self.assertEqual([command[0].name for command in commands],
                          ["ReconstructMesh", "RefineMesh", "TextureMesh"])
         self.assertTrue(all("--refractive" in command for command in commands))

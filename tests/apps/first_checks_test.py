@@ -8,12 +8,10 @@ import pathlib
 import re
 import shutil
 import subprocess
-import sys
 import unittest.mock
 
-from pipeline_folder import InFolder
-from programs import BIN, ProgramTest, grey_png, main, read, run, write
-from stand_ins import SCRIPT
+from pipeline_folder import InFolder, reconstruct_command
+from programs import ProgramTest, grey_png, main, read, run, write
 
 from axial_pipeline import estimates, first_checks
 from axial_pipeline.failure import Failure
@@ -30,13 +28,19 @@ def housing_with(port):
 class Values(InFolder):
     """--scale-from and --refine."""
 
-    def scale(self, text, names=("a.jpg", "dive/b.jpg", "c,d.jpg")):
-        """The reason for which --scale-from is refused; empty if it is not."""
+    def reason(self, check, option, text, *more, **given):
+        """The reason for which the value of an option is refused; empty if it is not."""
         try:
-            first_checks.check_scale(argparse.Namespace(scale_from=text, images="images"), names)
+            check(argparse.Namespace(**given), *more)
         except Failure as failure:
-            return str(failure).removeprefix(f"--scale-from {text}: ")
+            return str(failure).removeprefix(f"{option} {text}: ")
         return ""
+
+    def scale(self, text, names=("a.jpg", "dive/b.jpg", "c,d.jpg")):
+        return self.reason(first_checks.check_scale, "--scale-from", text, names, scale_from=text, images="images")
+
+    def refine(self, text, housing):
+        return self.reason(first_checks.check_refine, "--refine", text, refine=text, housing=str(housing))
 
     def test_names_and_lengths_are_checked(self):
         for text in ("", "positions:file", "points:3,4,0.5", "images:a.jpg,dive/b.jpg,0.5",
@@ -54,13 +58,6 @@ class Values(InFolder):
                              ("image:a.jpg,c.jpg,0.5", "must begin with images:, points: or positions:"),
                              ("images", "must begin with images:, points: or positions:")):
             self.assertEqual(self.scale(text), reason)
-
-    def refine(self, text, housing):
-        try:
-            first_checks.check_refine(argparse.Namespace(refine=text, housing=str(housing)))
-        except Failure as failure:
-            return str(failure).removeprefix(f"--refine {text}: ")
-        return ""
 
     def test_unknowns_fit_the_ports(self):
         flat, dome = (self.write(f"{port['type']}.json", housing_with(port)) for port in (FLAT, DOME))
@@ -139,9 +136,7 @@ class Checked(ProgramTest):
         write(self.path("housing.json"), housing_with(FLAT))
 
     def check(self, *more, housing="housing.json", lens="lens.txt"):
-        command = [sys.executable, "-B", str(SCRIPT), "--images", "images", "--lens", lens, "--housing", housing,
-                   "-o", "out", "--programs", BIN, *more]
-        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60)
+        return subprocess.run(reconstruct_command(*more, lens=lens, housing=housing), cwd=self.folder, capture_output=True, text=True, timeout=60)
 
     def refused(self, *more, **files):
         """The line of a run that is refused, with and without --check, before it writes anything."""

@@ -3,10 +3,8 @@
 
 import argparse
 import array
-import contextlib
 import os
 import pathlib
-import sqlite3
 import unittest
 import unittest.mock
 
@@ -27,6 +25,19 @@ case "$*" in
   feature_extractor*) [ -f "$3" ] || cp {folder}/plain.db "$3" ;;
 esac
 """
+
+
+def add_matches(file, pair, matches):
+    """Verified matches of a pair of photographs: pairs of features."""
+    with database.opened(file) as connection:
+        data = array.array("I", [number for match in matches for number in match])
+        connection.execute("INSERT INTO two_view_geometries VALUES (?, ?, 2, ?)",
+                           (database.PAIR * pair[0] + pair[1], len(matches), data.tobytes()))
+
+
+def same(count):
+    """Matches of features with the same number in both photographs."""
+    return [(number, number) for number in range(count)]
 
 
 class Samples(unittest.TestCase):
@@ -57,18 +68,8 @@ class Looks(Databases):
     def setUp(self):
         super().setUp()
         self.put_script("colmap", COLMAP.format(folder=self.folder))
-        environment = {"PATH": f"{self.folder}:{os.environ['PATH']}"}
-        patch = unittest.mock.patch.dict(os.environ, environment)
-        patch.start()
-        self.addCleanup(patch.stop)
+        self.put_on_path()
         self.given = argparse.Namespace(images="images")
-
-    def add_matches(self, file, pair, numbers):
-        """Verified matches of the features with these numbers in both photographs."""
-        with contextlib.closing(sqlite3.connect(file)) as connection, connection:
-            data = array.array("I", [number for one in numbers for number in (one, one)])
-            connection.execute("INSERT INTO two_view_geometries VALUES (?, ?, 2, ?)",
-                               (database.PAIR * pair[0] + pair[1], len(numbers), data.tobytes()))
 
     def rows(self, photographs, sizes=None):
         sizes = sizes or dict.fromkeys(photographs, SIZE)
@@ -84,7 +85,7 @@ class Looks(Databases):
         photographs = {f"{i}.jpg": (1000 + i, SHARP) for i in range(4)}
         self.database(photographs, "plain.db")
         for pair in ((1, 2), (2, 3), (3, 4)):
-            self.add_matches(self.folder / "plain.db", pair, range(800))
+            add_matches(self.folder / "plain.db", pair, same(800))
         self.assertEqual(self.rows(photographs), {
             "looked at": ["4 of 4 photographs, made smaller to 640 pixels if they are larger"],
             "contrast": ["1001 features in a photograph (median; 1000 to 1003)"],
@@ -97,7 +98,7 @@ class Looks(Databases):
     def test_names_may_have_blanks(self):
         """COLMAP splits the lines of its list of pairs at blanks."""
         photographs = dict.fromkeys(("dive 1/0.jpg", "dive 1/1.jpg"), (1000, SHARP))
-        self.add_matches(self.database(photographs, "plain.db"), (1, 2), range(800))
+        add_matches(self.database(photographs, "plain.db"), (1, 2), same(800))
         self.assertIn("about 100% between", self.rows(photographs)["overlap"][0])
         self.assertEqual((self.folder / "pairs.txt").read_text(), "1 2\n")
         self.assertEqual(database.names(self.folder / "matched.db"), {1: "1", 2: "2"})
@@ -107,7 +108,7 @@ class Looks(Databases):
                        "4.jpg": (2, SHARP)}
         file = self.database(photographs, "plain.db")
         self.database({"4.jpg": (3, SHARP)}, "weak.db")
-        self.add_matches(file, (1, 3), range(800))
+        add_matches(file, (1, 3), same(800))
         found = self.rows(photographs)
         probably = "which the run will probably leave out"
         self.assertEqual(found["blurred"], [f"1 of 5, {probably}: 1.jpg"])
@@ -121,7 +122,7 @@ class Looks(Databases):
     def test_haze_is_looked_at_with_weak_features(self):
         self.database({f"{i}.jpg": (15, SHARP) for i in range(3)}, "plain.db")
         weak = self.database({f"{i}.jpg": (900, SHARP) for i in range(3)}, "weak.db")
-        self.add_matches(weak, (1, 2), range(9))
+        add_matches(weak, (1, 2), same(9))
         found = self.rows([f"{i}.jpg" for i in range(3)])
         self.assertEqual(found["contrast"][0], "15 features in a photograph (median; 15 to 15)")
         self.assertNotIn("dark", found)
@@ -166,10 +167,7 @@ class Overlaps(Databases):
         places = features_at(file)
         left = [number for number, x in enumerate(places["a.jpg"]) if x < 240]
         right = [number for number, x in enumerate(places["b.jpg"]) if x >= 120][:len(left)]
-        with contextlib.closing(sqlite3.connect(file)) as connection, connection:
-            data = array.array("I", [number for pair in zip(left, right) for number in pair])
-            connection.execute("INSERT INTO two_view_geometries VALUES (?, ?, 2, ?)",
-                               (database.PAIR + 2, len(left), data.tobytes()))
+        add_matches(file, (1, 2), list(zip(left, right)))
         self.assertAlmostEqual(first_look.overlaps_in(file, [("b.jpg", "a.jpg")])["b.jpg", "a.jpg"], (0.5 + 0.75) / 2)
 
 
@@ -177,9 +175,7 @@ def features_at(file):
     """The x of the features of each photograph, by name."""
     found = {}
     for name, data in database.rows_of(file, "SELECT name, data FROM images JOIN keypoints USING (image_id)"):
-        numbers = array.array("f")
-        numbers.frombytes(data)
-        found[name] = numbers[::6]
+        found[name] = database.columns_in(data, 6)[0]
     return found
 
 

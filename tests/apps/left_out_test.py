@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Photographs that do no good are found and left out: blurred, dark and doubled ones."""
 
-import contextlib
 import random
 import shutil
-import sqlite3
 import struct
 import unittest.mock
 
@@ -67,7 +65,7 @@ class Views(Databases):
     def views(self, scenes):
         """A database of photographs with these features, by name."""
         file = self.database({name: (1, SHARP) for name in scenes})
-        with contextlib.closing(sqlite3.connect(file)) as connection, connection:
+        with database.opened(file) as connection:
             for number, scene in enumerate(scenes.values(), 1):
                 rows = [value for x, y, scale, _ in scene for value in (x, y, scale, 0, 0, scale)]
                 connection.execute("UPDATE keypoints SET rows = ?, data = ? WHERE image_id = ?",
@@ -153,7 +151,7 @@ class LeftOut(Databases):
 class InARun(StandIns):
     def setUp(self):
         super().setUp()
-        (self.folder / "images" / "copy.png").write_bytes(PHOTOGRAPHS[1])
+        self.write("images/copy.png", PHOTOGRAPHS[1])
         self.options = ["--until", "poses"]
 
     def test_copies_are_named_before_anything_runs(self):
@@ -168,9 +166,8 @@ class InARun(StandIns):
     def test_a_photograph_that_was_left_out_has_no_known_length(self):
         """In a run, and in one that continues after the matches."""
         Databases.database(self, {**{f"{i}.png": (2000, SHARP) for i in range(3)}, "copy.png": (3, SHARP)}, "found.db")
-        with (self.folder / "colmap").open("a") as script:
-            script.write('[ "$1" != feature_extractor ] || cp found.db out/features.db\n')
-        (self.folder / "images" / "copy.png").write_bytes(PHOTOGRAPHS[1] + b"other")
+        self.add_to("colmap", '[ "$1" != feature_extractor ] || cp found.db out/features.db\n')
+        self.write("images/copy.png", PHOTOGRAPHS[1] + b"other")
         scale = ["--scale-from", "images:0.png,copy.png,2"]
         said = ("reconstruct: --scale-from images:0.png,copy.png,2: copy.png is left out, because it is dark or "
                 "without contrast, with 3 features; name another photograph, or give --keep-all\n")

@@ -3,28 +3,24 @@
 the positions in COLMAP's database."""
 
 import argparse
-import contextlib
 import itertools
-import os
 import pathlib
 import shutil
-import sqlite3
 import struct
 import subprocess
 import tempfile
 import unittest
 import unittest.mock
 
-from pipeline_folder import InFolder
-from programs import grey_png, main, run
+from colmap_databases import make_tables
+from pipeline_folder import InFolder, simulate
+from programs import grey_png, main
 
-from axial_pipeline import colmap, gps, matching
+from axial_pipeline import colmap, matching, photographs
+from axial_pipeline.database import opened, rows_of
+from axial_pipeline.exif import exif_in
 from axial_pipeline.failure import Failure
 
-# The table of COLMAP 3.8.
-IMAGES = """CREATE TABLE images (image_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL,
-    name TEXT NOT NULL UNIQUE, camera_id INTEGER NOT NULL, prior_qw REAL, prior_qx REAL, prior_qy REAL,
-    prior_qz REAL, prior_tx REAL, prior_ty REAL, prior_tz REAL)"""
 ALL = (2, 4, 6)  # tags of latitude, longitude and altitude
 
 
@@ -41,23 +37,25 @@ def exif(tags=ALL, order="<", seconds=3):
     return {"<": b"II*\0\x08\0\0\0", ">": b"MM\0*\0\0\0\x08"}[order] + tables
 
 
-def jpeg(photograph=b"\xff\xd8\xff\xd9", **options):
+FRAME = b"\xff\xd8\xff\xc0" + struct.pack(">HBHHB", 8, 8, 3, 4, 1) + b"\xff\xd9"
+
+
+def jpeg(photograph=FRAME, **options):
     """A JPEG file with Exif data before the rest of `photograph`."""
     segment = b"Exif\0\0" + exif(**options)
     return (photograph[:2] + b"\xff\xe1" + struct.pack(">H", len(segment) + 2) + segment
             + photograph[2:])
 
 
-def rows(database, query):
-    with contextlib.closing(sqlite3.connect(database)) as connection:
-        return connection.execute(query).fetchall()
+def check(given):
+    matching.check(given, photographs.found_in(given.images).images)
 
 
 def pairs(database):
     """The pairs of image names that COLMAP compared."""
-    names = dict(rows(database, "SELECT image_id, name FROM images"))
+    names = dict(rows_of(database, "SELECT image_id, name FROM images"))
     return {tuple(sorted((names[pair // 2147483647], names[pair % 2147483647])))
-            for pair, in rows(database, "SELECT pair_id FROM two_view_geometries")}
+            for pair, in rows_of(database, "SELECT pair_id FROM two_view_geometries")}
 
 
 class Matching(InFolder):
@@ -66,9 +64,7 @@ class Matching(InFolder):
     def setUp(self):
         super().setUp()
         self.knows("--SiftMatching.use_gpu --SpatialMatching.is_gps ")
-        path = unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}")
-        path.start()
-        self.addCleanup(path.stop)
+        self.put_on_path()
         for name in "abc":
             self.write(f"images/{name}.jpg", jpeg())
         self.positions = self.write("positions.txt", "a.jpg 5e5 0 0\nb.jpg 5e5 1 0\nc.jpg 5e5 3 -2\n")
@@ -85,15 +81,15 @@ class Matching(InFolder):
 
     def failure_of(self, given):
         with self.assertRaises(Failure) as caught:
-            matching.check(given)
+            check(given)
         self.assertNotIn("\n", str(caught.exception))
         return str(caught.exception)
 
     def database(self, names="abc", prior=None):
         path = self.folder / "features.db"
         path.unlink(missing_ok=True)
-        with contextlib.closing(sqlite3.connect(path)) as connection, connection:
-            connection.execute(IMAGES)
+        with opened(path) as connection:
+            make_tables(connection, (4, 3))
             connection.executemany("INSERT INTO images (name, camera_id, prior_tx, prior_ty, prior_tz) "
                                    "VALUES (?, 1, ?, ?, ?)", [(f"{name}.jpg", *(prior or [None] * 3))
                                                               for name in names])
@@ -105,7 +101,7 @@ class Matching(InFolder):
     def prepared(self, given):
         """What the step says before COLMAP matches, and the positions in the database by name."""
         said = self.said_by(self.step(given).before)
-        found = rows(self.folder / "database.db", "SELECT name, prior_tx, prior_ty, prior_tz FROM images")
+        found = rows_of(self.folder / "database.db", "SELECT name, prior_tx, prior_ty, prior_tz FROM images")
         return said, {name: position for name, *position in found}
 
     def test_every_matcher_has_its_command(self):
@@ -122,7 +118,7 @@ class Matching(InFolder):
                  [self.positions]),
                 (self.given("vocabulary", vocabulary=tree), "vocab_tree",
                  ["--VocabTreeMatching.vocab_tree_path", tree], [pathlib.Path(tree)])):
-            matching.check(given)
+            check(given)
             step = self.step(given)
             self.assertEqual(step.command, ["colmap", f"{command}_matcher", "--database_path",
                                             str(self.folder / "database.db"), *more,
@@ -142,7 +138,7 @@ class Matching(InFolder):
         for name in "abc":
             self.write(f"images/{name}.jpg", grey_png([bytes(4)] * 3))
         self.positions.write_text("a.jpg 16 54 0\nb.jpg 16 54.0001 0\nc.jpg 16 54.0002 0\n")
-        told = self.said_by(matching.check, self.with_positions())
+        told = self.said_by(check, self.with_positions())
         self.assertIn("they are taken as degrees to find neighbours", told)
         said, found = self.prepared(self.with_positions())
         self.assertEqual(said, "")
@@ -174,7 +170,7 @@ class Matching(InFolder):
             self.step(self.given("spatial")).before()
 
     def test_a_newer_table_is_left_alone(self):
-        with contextlib.closing(sqlite3.connect(self.folder / "features.db")) as connection, connection:
+        with opened(self.folder / "features.db") as connection:
             connection.execute("CREATE TABLE images (image_id INTEGER, name TEXT)")
         self.assertEqual(self.said_by(self.step(self.given("spatial")).before), "")
 
@@ -191,7 +187,7 @@ class Matching(InFolder):
                          f"--matcher spatial: none of the photographs in {images} have {end}")
         self.write("images/dive 2/d.jpg", jpeg())
         self.write("images/dive 2/e.jpg", jpeg())
-        matching.check(self.given("spatial"))
+        check(self.given("spatial"))
 
     def test_wrong_options_are_refused(self):
         for given, said in (
@@ -206,35 +202,34 @@ class Matching(InFolder):
         self.knows("--SiftMatching.use_gpu ")
         self.assertIn("--matcher spatial: this version of COLMAP takes no positions",
                       self.failure_of(self.with_positions()))
-        matching.check(self.given("spatial"))
+        check(self.given("spatial"))
         self.write("positions.txt", "a.jpg 1 2 3\nb.jpg 1 2\n")
         self.assertEqual(self.failure_of(self.with_positions()),
                          f"{self.positions}:2: must be NAME X Y Z with finite numbers")
 
 
-class Gps(InFolder):
+class Gps(unittest.TestCase):
     def test_only_a_whole_position_counts(self):
         for order in "<>":
             for count in range(4):
                 for tags in itertools.combinations(ALL, count):
-                    file = self.write("a.jpg", jpeg(tags=tags, order=order))
-                    self.assertEqual(gps.has_gps(file), tags == ALL, (order, tags))
+                    data = jpeg(tags=tags, order=order)
+                    self.assertEqual(exif_in(data).has_position, tags == ALL, (order, tags))
 
     def test_forms_of_files(self):
         for content, expected in ((exif(), True), (exif(order=">"), True), (exif([2]), False),
                                   (b"\x89PNG\r\n\x1a\n" + b"\0\0\0\1eXIf" + exif(), True),
                                   (b"\x89PNG\r\n\x1a\n", False), (b"", False), (b"text", False)):
-            self.assertEqual(gps.has_gps(self.write("file", content)), expected)
-        self.assertFalse(gps.has_gps(self.folder / "none"))
+            self.assertEqual(exif_in(content).has_position, expected)
 
     def test_broken_data_have_no_position(self):
         """Every file that ends within the tables has none. Every file with one wrong byte is read
         without an error."""
         whole = jpeg()
-        for end in range(len(whole) - 2 - 3 * 24 - 4):
-            self.assertFalse(gps.has_gps(self.write("a.jpg", whole[:end])), end)
+        for end in range(len(whole) - len(FRAME) + 2 - 3 * 24 - 4):
+            self.assertFalse(exif_in(whole[:end]).has_position, end)
         for at in range(len(whole)):
-            gps.has_gps(self.write("a.jpg", whole[:at] + b"\xff" + whole[at + 1:]))
+            exif_in(whole[:at] + b"\xff" + whole[at + 1:])
 
 
 @unittest.skipUnless(shutil.which("colmap") and
@@ -248,10 +243,7 @@ class WithColmap(InFolder):
         folder = tempfile.TemporaryDirectory(prefix="axial_")
         cls.addClassCleanup(folder.cleanup)
         cls.scene = pathlib.Path(folder.name) / "scene"
-        made = run("SimulateUnderwater", "--preset", "transect", "--views", 8, "--width", 160, "--height",
-                   120, "--coarseness", 4, "--samples", 1, "--truth", 0, "--medium", "water", "-o",
-                   cls.scene)
-        assert made.returncode == 0, made.stderr
+        simulate(cls.scene, "transect", 8, (160, 120))
 
     def matched(self, images, scale_from=""):
         """The pairs that COLMAP compares with two neighbours of each photograph."""
@@ -259,7 +251,7 @@ class WithColmap(InFolder):
                                    images=str(images))
         features, database = self.folder / "features.db", self.folder / "database.db"
         with unittest.mock.patch.object(matching, "NEIGHBOURS", 2):
-            matching.check(given)
+            check(given)
             step = matching.step(given, features, database)
         self.called(colmap.features(features, images, "PINHOLE"))
         self.said = self.said_by(step.before)

@@ -7,7 +7,7 @@ import unittest
 import pipeline_folder  # noqa: F401  makes axial_pipeline importable
 from programs import main
 
-from axial_pipeline import pair_choice, similar
+from axial_pipeline import database, pair_choice, similar
 
 SIZE, FEATURES = (80, 80), 400
 
@@ -15,7 +15,7 @@ SIZE, FEATURES = (80, 80), 400
 def descriptor(number, noise=None):
     """The descriptor of a point of the seabed. `noise`: a random.Random of the photograph that sees it."""
     chance = random.Random(number)
-    values = [chance.randrange(120) for _ in range(similar.LENGTH)]
+    values = [chance.randrange(120) for _ in range(database.DESCRIPTOR)]
     return bytes(min(255, max(0, value + (noise.randint(-3, 3) if noise else 0))) for value in values)
 
 

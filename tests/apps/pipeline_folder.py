@@ -1,26 +1,45 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A test in a folder of its own, for tests of apps/pipeline/axial_pipeline, which it makes
-importable."""
+importable, and the commands of the pipeline."""
 
 import contextlib
 import io
+import os
 import pathlib
 import struct
+import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
+
+from programs import BIN, grey_png, run
 
 PIPELINE = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline"
 sys.path.insert(0, str(PIPELINE))
+
+
+def reconstruct_command(*options, source=("--images", "images"), lens="lens", housing="housing", out="out",
+                        programs=BIN):
+    """The words of a command `reconstruct`."""
+    return [sys.executable, "-B", str(PIPELINE / "reconstruct"), *map(str, source), "--lens", str(lens), "--housing",
+            str(housing), "-o", str(out), "--programs", str(programs), *map(str, options)]
+
+
+def simulate(folder, preset, views, size, *more, samples=1):
+    """Writes photographs under water of a scene into `folder`. `size`: (width, height) [px]."""
+    made = run("SimulateUnderwater", "--preset", preset, "--views", views, "--width", size[0], "--height", size[1],
+               "--coarseness", 4, "--samples", samples, "--truth", 0, "--medium", "water", *more, "-o", folder)
+    assert made.returncode == 0, made.stderr
 
 
 class InFolder(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="axial_")
         self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        self.folder = pathlib.Path(folder.name).resolve()
 
-    def write(self, name, content):
+    def write(self, name, content="mine"):
         path = self.folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
@@ -28,6 +47,12 @@ class InFolder(unittest.TestCase):
 
     def put_script(self, name, script):
         self.write(name, f"#!/bin/sh\n{script}\n").chmod(0o755)
+
+    def put_on_path(self, folder="."):
+        """Programs in `folder` come before the installed ones until the test ends."""
+        path = unittest.mock.patch.dict(os.environ, PATH=f"{self.folder / folder}:{os.environ['PATH']}")
+        path.start()
+        self.addCleanup(path.stop)
 
     def model(self, number, images):
         self.write(f"models/{number}/images.bin", struct.pack("<Q", images))
@@ -37,3 +62,18 @@ class InFolder(unittest.TestCase):
         with contextlib.redirect_stdout(said):
             function(*arguments)
         return said.getvalue()
+
+
+class ColmapModelCase(InFolder):
+    """The command colmap-model with two photographs. A stand-in for COLMAP may lie in the folder `bin`."""
+
+    def setUp(self):
+        super().setUp()
+        self.put_on_path("bin")
+        for number in range(2):
+            self.write(f"images/{number}.png", grey_png([bytes(4)] * 3))
+
+    def run_it(self, *more):
+        command = [sys.executable, "-B", str(PIPELINE / "colmap-model"), "--images", "images",
+                   "--camera-model", "PINHOLE", "--camera-parameters", "1,2,3,4", "-o", "out", *more]
+        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60)

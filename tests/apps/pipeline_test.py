@@ -7,18 +7,12 @@ import contextlib
 import io
 import json
 import math
-import os
 import random
-import subprocess
-import sys
-import unittest
-import unittest.mock
 
-from pipeline_folder import PIPELINE, InFolder
-from programs import grey_png, main
+from pipeline_folder import PIPELINE, ColmapModelCase, InFolder
+from programs import main
 
-from axial_pipeline import (colmap, files, lens, position_rows, positions, reconstruct_options, reconstruct_steps,
-                            run_file, running, steps, versions)
+from axial_pipeline import colmap, files, position_rows, positions, run_file, running, start_lens, steps, truth
 from axial_pipeline.failure import Failure
 from axial_pipeline.programs import Programs, default_folder
 
@@ -27,8 +21,8 @@ class ColmapCommands(InFolder):
     def words(self, help_text, function, *arguments):
         """The words of a command where `colmap ... --help` prints `help_text`."""
         self.put_script("colmap", f"echo '{help_text}'")
-        with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
-            return " ".join(map(str, function(*arguments)))
+        self.put_on_path()
+        return " ".join(map(str, function(*arguments)))
 
     def test_every_version_is_kept_off_the_graphics_card(self):
         for family in colmap.EXTRACTION:
@@ -70,15 +64,9 @@ class ColmapModels(InFolder):
         for number, images in enumerate((3, 9, 2)):
             self.model(number, images)
         (self.folder / "models" / "unfinished").mkdir()
-        found = colmap.by_size(self.folder / "models")
+        found = colmap.best_first([self.folder / "models"])
         self.assertEqual([(model.name, size) for model, size in found],
                          [("1", 9), ("0", 3), ("2", 2)])
-
-    def test_no_model_is_a_failure_that_names_the_log(self):
-        (self.folder / "models").mkdir()
-        with self.assertRaisesRegex(Failure, "COLMAP found no poses: see mapper.log"):
-            colmap.largest(self.folder / "models", "mapper.log")
-
 
 
 # A stand-in for COLMAP that writes its commands to the file `commands`. The mapper finds two models.
@@ -91,20 +79,12 @@ for number in 0 1; do
 done"""
 
 
-class ColmapModelCommand(InFolder):
+class ColmapModelCommand(ColmapModelCase):
     """The command colmap-model, with a stand-in for COLMAP."""
 
     def setUp(self):
         super().setUp()
         self.put_script("bin/colmap", COLMAP)
-        for number in range(2):
-            self.write(f"images/{number}.png", grey_png([bytes(4)] * 3))
-
-    def run_it(self, *more):
-        command = [sys.executable, "-B", str(PIPELINE / "colmap-model"), "--images", "images",
-                   "--camera-model", "PINHOLE", "--camera-parameters", "1,2,3,4", "-o", "out", *more]
-        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60,
-                              env={**os.environ, "PATH": f"{self.folder}/bin:{os.environ['PATH']}"})
 
     def test_it_keeps_the_largest_model(self):
         ended = self.run_it("--max-threads", "3")
@@ -156,23 +136,24 @@ class Lenses(InFolder):
     def test_the_start_is_the_lens_in_air_times_the_waters_index(self):
         one = b"# a comment\n\n1 SIMPLE_RADIAL 640 480 1000 320 240 -0.1\n"
         two = b"1 OPENCV 640 480 1000 2000 320 240 1 2 3 4\n"
-        calibmar = b"model: OPENCV\nwidth: 640\nparameters: [1000, 2000, 320,\n  240, 1, 2, 3, 4]\n"
-        for text, model, expected in [(one, "OPENCV", "1333,1333,320,240,0,0,0,0"),
-                                      (one, "RADIAL", "1333,320,240,0,0"),
-                                      (two, "PINHOLE", "1333,2666,320,240"),
-                                      (two, "SIMPLE_RADIAL", "1999.5,320,240,0"),
-                                      (calibmar, "OPENCV", "1333,2666,320,240,0,0,0,0"),
-                                      (one, "UNKNOWN", None), (b"\x01\xff\0", "OPENCV", None),
-                                      (b"", "OPENCV", None),
-                                      (b"1 OPENCV 640 480 a\n", "OPENCV", None)]:
-            self.assertEqual(lens.start_under_water(self.write("lens", text), model), expected)
+        calibmar = (b"model: OPENCV\nwidth: 640\nheight: 480\nparameters: [1000, 2000, 320,\n  240, 1, 2, 3, 4]\n")
+        for text, model, expected in [(one, "OPENCV", [[1333, 1333, 320, 240, 0, 0, 0, 0]]),
+                                      (one, "RADIAL", [[1333, 320, 240, 0, 0]]),
+                                      (two, "PINHOLE", [[1333, 2666, 320, 240]]),
+                                      (two, "SIMPLE_RADIAL", [[1999.5, 320, 240, 0]]),
+                                      (calibmar, "OPENCV", [[1333, 2666, 320, 240, 0, 0, 0, 0]]),
+                                      (one, "FOV", [None]), (b"\x01\xff\0", "OPENCV", []), (b"", "OPENCV", []),
+                                      (b"1 OPENCV 640 480 a\n", "OPENCV", [])]:
+            file = self.write("lens.yaml" if text is calibmar else "lens.txt", text)
+            given = argparse.Namespace(cameras=[], lens=str(file), lens_model=model)
+            self.assertEqual(start_lens.starts_of(given), expected)
 
-    def test_parameters_of_a_pinhole_are_taken_as_they_stand(self):
-        self.write("cameras.txt", "# PINHOLE x\n1 PINHOLE 640 480 1000.50 1e3 320 240\n")
-        self.assertEqual(lens.pinhole_parameters(self.folder), "1000.50,1e3,320,240")
-        self.write("cameras.txt", "1 OPENCV 640 480 1 1 1 1 0 0 0 0\n")
+    def test_parameters_of_a_pinhole_are_those_of_the_file(self):
+        self.write("sparse/cameras.txt", "# PINHOLE x\n1 PINHOLE 640 480 1000.50 1e3 320 240\n")
+        self.assertEqual(truth.pinhole_parameters(self.folder), "1000.5,1000.0,320.0,240.0")
+        self.write("sparse/cameras.txt", "1 OPENCV 640 480 1 1 1 1 0 0 0 0\n")
         with self.assertRaisesRegex(Failure, "cameras.txt: has no PINHOLE camera"):
-            lens.pinhole_parameters(self.folder)
+            truth.pinhole_parameters(self.folder)
 
 
 class Positions(InFolder):
@@ -290,12 +271,9 @@ class Positions(InFolder):
                     self.assertLess(math.dist(place, found), 1e-3)
 
     def test_names_of_no_photograph_are_told(self):
-        for name in ("a.jpg", "b.jpg", "c.jpg"):
-            self.write(name, grey_png([bytes(4)] * 3))
-        self.write("C.txt", "no photograph")
         file = self.write("positions.txt",
                           "a.jpg 0 0 0\nb.jpg 1 0 0\n# d.jpg\nc.jpg 0 1 0\nC.jpg 0 1 0\n")
-        said = self.said_by(positions.check, file, self.folder)
+        said = self.said_by(positions.check, file, "images", ["a.jpg", "b.jpg", "c.jpg"])
         self.assertIn("1 of 4 names are not photographs", said)
         self.assertIn("C.jpg first", said)
 
@@ -404,9 +382,6 @@ class RunFile(InFolder):
 
 
 class ProgramCommands(InFolder):
-    def test_every_program_of_a_run_is_asked_for_its_version(self):
-        self.assertEqual(set(reconstruct_options.PROGRAMS) - set(versions.QUESTIONS), set())
-
     def test_commands(self):
         programs = Programs("bin")
         for command, words in (

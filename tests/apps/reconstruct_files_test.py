@@ -5,11 +5,9 @@ photographs and masks, damaged files, and results that are out of date."""
 import json
 import os
 import shutil
-import subprocess
-import sys
 import unittest.mock
 
-from pipeline_folder import PIPELINE, InFolder
+from pipeline_folder import ColmapModelCase
 from programs import grey_png, main
 from stand_ins import StandIns
 
@@ -17,43 +15,7 @@ from axial_pipeline import photographs, reconstruct_options
 from axial_pipeline.failure import Failure
 
 
-class FilesCase(StandIns):
-    def put(self, name, content="mine"):
-        path = self.folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content if isinstance(content, bytes) else content.encode())
-        return path
-
-    def commands(self):
-        file = self.folder / "commands"
-        return file.read_text().splitlines() if file.exists() else []
-
-    def command_of(self, program):
-        return [line for line in self.commands() if line.startswith(program + " ")][-1]
-
-    def succeeds(self, *options):
-        """Returns what the run said."""
-        ended = self.ended(*options)
-        self.assertEqual((ended.returncode, ended.stderr), (0, ""), options)
-        return ended.stdout
-
-    def everything(self):
-        """All names below the folder, with the contents of files."""
-        return {path: path.read_bytes() if path.is_file() else None for path in self.folder.rglob("*")}
-
-    def refused(self, *options):
-        """Checks that the run ends in its first second, with one line, and changes nothing. Returns the
-        line."""
-        before = self.everything()
-        ended = self.ended(*options)
-        self.assertEqual((ended.returncode, ended.stderr.count("\n")), (1, 1), ended.stderr)
-        self.assertTrue(ended.stderr.startswith("reconstruct: "), ended.stderr)
-        self.assertNotIn("Traceback", ended.stderr)
-        self.assertEqual(self.everything(), before)
-        return ended.stderr.removeprefix("reconstruct: ").rstrip("\n")
-
-
-class OtherFiles(FilesCase):
+class OtherFiles(StandIns):
     """Files in the output folder that no run made."""
 
     def test_nothing_of_the_user_is_replaced(self):
@@ -62,13 +24,13 @@ class OtherFiles(FilesCase):
                  "scene_dense.ply", "scene_dense_mesh.ply", "scene_map.dem.tif", "scene_textured.glb",
                  "scene_textured0.png", "undistorted/a.png"]
         for name in names:
-            self.put(f"out/{name}")
+            self.write(f"out/{name}")
         said = self.refused("--truth", "lens")
         for name in ("colmap", "database.db", "depth0000.dmap", "evaluation.json", "and 7 more"):
             self.assertIn(name, said)
         for name in names[:9]:
             shutil.rmtree(self.folder / "out")
-            self.put(f"out/{name}")
+            self.write(f"out/{name}")
             named = name.split("/")[0] if name.startswith(("colmap", "refined")) else name
             self.assertEqual(self.refused(),
                              f"--output {self.folder}/out: {named}: no record of an earlier run names this "
@@ -76,7 +38,7 @@ class OtherFiles(FilesCase):
         self.assertEqual(self.commands(), [])
 
     def test_files_with_other_names_do_not_matter(self):
-        kept = {name: self.put(f"out/{name}") for name in
+        kept = {name: self.write(f"out/{name}") for name in
                 ("scene.blend", "logs/mine.log", "steps/mine.json", "my_database.db", "depth.txt",
                  "scene_textured.glb")}
         (self.folder / "out" / "colmap").mkdir()
@@ -90,7 +52,7 @@ class OtherFiles(FilesCase):
         self.assertIn(f"Poses: {self.folder}/out/refined", said)
         self.assertTrue((self.folder / "out" / "report.md").exists())
         self.assertFalse((self.folder / "out" / "scene.mvs").exists())
-        self.assertEqual(self.succeeds("--until", "cloud").count("done before"), 5)
+        self.assertEqual(self.done_before("--until", "cloud"), 5)
         for options, line in [
                 (("--truth", "lens"), f"--truth {self.folder}/lens: is compared with the cloud, which --until "
                  "poses does not make"),
@@ -109,12 +71,12 @@ class OtherFiles(FilesCase):
             record = json.loads(path.read_text())
             path.write_text(json.dumps({key: value for key, value in record.items()
                                         if key not in ("makes", "ended")}))
-        self.assertEqual(self.succeeds().count("done before"), 11)
+        self.assertEqual(self.done_before(), 11)
         (records / "poses.done.json").unlink()  # killed there
-        self.assertEqual(self.succeeds("--map=--hillshade").count("done before"), 3)
+        self.assertEqual(self.done_before("--map=--hillshade"), 3)
         (records / "features.done.json").write_text("")
         (records / "features.begun.json").write_text("")
-        self.assertEqual(self.succeeds().count("done before"), 0)
+        self.assertEqual(self.done_before(), 0)
 
     def test_a_record_names_what_its_version_makes(self):
         """A file that a newer version would write, too, may be the user's."""
@@ -123,40 +85,32 @@ class OtherFiles(FilesCase):
         made = json.loads(record.read_text())
         self.assertIn("still_features.png", made["makes"])
         record.write_text(json.dumps({**made, "makes": ["features.db"]}))
-        self.put("out/still_features.png")
+        self.write("out/still_features.png")
         self.assertIn("still_features.png: no record", self.refused("--until", "cloud"))
 
     def test_an_output_that_is_no_folder_is_refused(self):
         os.symlink("out", self.folder / "out")
         self.assertEqual(self.refused(), "--output out: is a link that leads to itself")
         (self.folder / "out").unlink()
-        self.put("out")
+        self.write("out")
         self.assertEqual(self.refused(), f"--output {self.folder}/out: is not a folder")
 
     def test_a_link_is_removed_and_what_it_leads_to_stays(self):
         self.succeeds()
         shutil.rmtree(self.folder / "out" / "colmap")
-        mine = self.put("mine/photograph")
+        mine = self.write("mine/photograph")
         os.symlink(self.folder / "mine", self.folder / "out" / "colmap")
-        self.put("lens", "other")
+        self.write("lens", "other")
         self.succeeds()
         self.assertTrue(mine.exists())
         self.assertTrue((self.folder / "out" / "colmap" / "best").is_dir())
 
 
-class ColmapModelFiles(InFolder):
+class ColmapModelFiles(ColmapModelCase):
     """Files of the user in the output folder of colmap-model."""
-
-    def run_it(self, *options):
-        command = [sys.executable, "-B", str(PIPELINE / "colmap-model"), "--images", "images",
-                   "--camera-model", "PINHOLE", "--camera-parameters", "1,2,3,4", "-o", "out", *options]
-        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60,
-                              env={**os.environ, "PATH": f"{self.folder}/bin:{os.environ['PATH']}"})
 
     def test_nothing_of_the_user_is_replaced(self):
         self.put_script("bin/colmap", '[ "$1" = mapper ] && exit 9; touch out/database.db; exit 0')
-        for number in range(2):
-            self.write(f"images/{number}.png", grey_png([bytes(4)] * 3))
         for name in ("database.db", "models/0/images.bin", "model/notes", "mapper.log"):
             shutil.rmtree(self.folder / "out", ignore_errors=True)
             mine = self.write(f"out/{name}", "mine")
@@ -174,8 +128,6 @@ class ColmapModelFiles(InFolder):
             self.assertIn("colmap: exit code 9", self.run_it().stderr)
 
     def test_a_model_without_these_masks_is_not_kept_for_one_with_them(self):
-        for number in range(2):
-            self.write(f"images/{number}.png", grey_png([bytes(4)] * 3))
         for name in ("cameras.bin", "images.bin", "points3D.bin"):
             self.write(f"out/model/{name}", "")
         self.assertIn("kept from an earlier run", self.run_it().stdout)
@@ -185,7 +137,7 @@ class ColmapModelFiles(InFolder):
                          "another --output\n")
 
 
-class Photographs(FilesCase):
+class Photographs(StandIns):
     """The folder of the photographs."""
 
     def test_too_few_are_refused(self):
@@ -194,13 +146,13 @@ class Photographs(FilesCase):
         images = self.folder / "images"
         self.assertEqual(self.refused(), f"--images {images}: has one photograph, 0.png; at least 2 are "
                                          "needed")
-        self.put("images/0.png", "text")
+        self.write("images/0.png", "text")
         self.assertEqual(self.refused(), f"--images {images}: has no photographs (0.png: not an image); at "
                                          "least 2 are needed")
 
     def test_what_colmap_would_do_wrong_is_refused(self):
         images = self.folder / "images"
-        other = self.put("images/.hidden/small.png", grey_png([bytes(2)] * 2))
+        other = self.write("images/.hidden/small.png", grey_png([bytes(2)] * 2))
         self.assertEqual(self.refused(), f"--images {images}: the photographs have different sizes: 3 of 4 x "
                          "3 pixels (0.png first), 1 of 2 x 2 pixels (.hidden/small.png); all must be of one "
                          "camera and setting: move the others to another folder")
@@ -222,8 +174,8 @@ class Photographs(FilesCase):
                                          "it, because COLMAP stops there")
 
     def test_files_beside_photographs_make_no_label_ambiguous(self):
-        self.put("images/0.xmp")
-        self.put("positions.txt", "0 0 0 0\n1 1 0 0\nimages//./2 0 1 0\n")
+        self.write("images/0.xmp")
+        self.write("positions.txt", "0 0 0 0\n1 1 0 0\nimages//./2 0 1 0\n")
         self.assertNotIn("not photographs", self.succeeds("--scale-from", "positions:positions.txt"))
 
     def test_a_pipe_is_no_photograph(self):
@@ -232,10 +184,10 @@ class Photographs(FilesCase):
 
     def test_what_colmap_leaves_out_is_told(self):
         images = self.folder / "images"
-        self.put("images/notes.txt")
+        self.write("images/notes.txt")
         os.symlink("nowhere", images / "broken.png")
         os.symlink(self.folder, images / "elsewhere")
-        self.put("images/dive 2/a.png", (images / "0.png").read_bytes()[:-12])
+        self.write("images/dive 2/a.png", (images / "0.png").read_bytes()[:-12])
         said = self.succeeds().splitlines()
         self.assertEqual(said[:4], [
             f"{images}: broken.png, notes.txt: not an image, not used",
@@ -264,26 +216,26 @@ class Photographs(FilesCase):
         frame = b"\xff\xc2\0\x0b\x08\0\x03\0\x04\x01\x01\x11\0\xff\xd9"
         for data in (grey_png([bytes(4)] * 3), b"\xff\xd8" + frame, b"\xff\xd8\xff\xe1\0\x05abc" + frame,
                      tiff("little", b"II*\0"), tiff("big", b"MM\0*")):
-            image = photographs.image_of(self.put("image", data))
+            image = photographs.image_of(self.write("image", data))
             self.assertEqual((image.size, image.is_whole), ((4, 3), True))
             for end in range(len(data)):
-                photographs.image_of(self.put("image", data[:end]))  # no exception
-        self.assertFalse(photographs.image_of(self.put("image", b"\xff\xd8" + frame[:-2])).is_whole)
-        self.assertIsNone(photographs.image_of(self.put("image", "")))
+                photographs.image_of(self.write("image", data[:end]))  # no exception
+        self.assertFalse(photographs.image_of(self.write("image", b"\xff\xd8" + frame[:-2])).is_whole)
+        self.assertIsNone(photographs.image_of(self.write("image", "")))
 
 
-class DamagedFiles(FilesCase):
+class DamagedFiles(StandIns):
     """Files of an earlier run that are damaged."""
 
     def test_a_damaged_report_is_made_again(self):
         self.succeeds()
         for damaged in ("", "{", "[1]", "[" * 100000, b"\xff"):
-            self.put("out/refined/report.json", damaged)
-            self.assertEqual(self.succeeds().count("done before"), 4)
+            self.write("out/refined/report.json", damaged)
+            self.assertEqual(self.done_before(), 4)
 
     def test_a_report_of_another_version_is_named(self):
         self.succeeds()
-        report = self.put("out/refined/report.json", '{"rms_before_px": "1"}')
+        report = self.write("out/refined/report.json", '{"rms_before_px": "1"}')
         ended = self.ended()
         self.assertEqual((ended.returncode, ended.stderr), (1, f"reconstruct: {report}: is damaged, or of "
                          "another version; remove it, and the same command makes it again\n"))
@@ -296,17 +248,17 @@ class DamagedFiles(FilesCase):
         whole = json.loads(record.read_text())
         for damaged in ("[" * 100000, json.dumps({**whole, "seconds": "1"}), b"\xff\xfe",
                         json.dumps({**whole, "seconds": float("nan")})):
-            self.put("out/steps/map.done.json", damaged)
-            self.assertEqual(self.succeeds().count("done before"), 10)
-        self.put("out/steps/map.done.json", json.dumps({"chain": whole["chain"]}))
-        self.assertEqual(self.succeeds().count("done before"), 11)
+            self.write("out/steps/map.done.json", damaged)
+            self.assertEqual(self.done_before(), 10)
+        self.write("out/steps/map.done.json", json.dumps({"chain": whole["chain"]}))
+        self.assertEqual(self.done_before(), 11)
 
 
-class Masks(FilesCase):
+class Masks(StandIns):
     """--masks reaches COLMAP and all programs that know masks."""
 
     def test_masks_reach_every_program(self):
-        self.put("masks/0.png")
+        self.write("masks/0.png")
         self.succeeds("--masks", "masks", "--ignore-mask-label", "7")
         out = self.folder / "out"
         self.assertEqual(self.commands()[0], f"InterfaceCOLMAP -i {self.folder}/images --mask-path "
@@ -318,7 +270,7 @@ class Masks(FilesCase):
             self.assertNotIn("--mask-path", self.command_of(program))
 
     def test_options_of_a_program_come_first(self):
-        self.put("masks/0.png")
+        self.write("masks/0.png")
         self.succeeds("--masks", "masks", "--texture=--mask-path other", "--densify=--mask-p x")
         self.assertIn("--mask-path other", self.command_of("MapSurface"))
         for program in ("TextureMesh", "MapSurface", "DensifyPointCloud"):
@@ -326,7 +278,7 @@ class Masks(FilesCase):
 
     def test_shortened_options_are_those_of_the_program(self):
         """The begin of an option is the option, as the programs read it."""
-        self.put("masks/0.png")
+        self.write("masks/0.png")
         self.succeeds("--masks", "masks", "--texture=--mask-pa other --ignore-mask=3")
         for program in ("TextureMesh", "MapSurface"):
             self.assertNotIn(f"{self.folder}/out/colmap_masks", self.command_of(program))
@@ -334,20 +286,20 @@ class Masks(FilesCase):
         self.succeeds("--texture=--mask-pa other", "--map=--mask-p mine")
         self.assertIn("--mask-p mine", self.command_of("MapSurface"))
         self.assertNotIn("other", self.command_of("MapSurface"))
-        self.put("before.ply")
+        self.write("before.ply")
         self.succeeds("--earlier", "before.ply", "--compare=--al none")
         self.assertNotIn("--align", self.command_of("CompareSurveys"))
 
     def test_changed_masks_begin_anew(self):
-        mask = self.put("masks/0.png")
+        mask = self.write("masks/0.png")
         options = ["--masks", "masks"]
-        self.assertEqual([self.succeeds(*options).count("done before") for _ in range(2)], [0, 12])
+        self.assertEqual([self.done_before(*options) for _ in range(2)], [0, 12])
         mask.write_text("changed")
-        self.assertEqual(self.succeeds(*options).count("done before"), 0)
-        self.assertEqual(self.succeeds().count("done before"), 0)
+        self.assertEqual(self.done_before(*options), 0)
+        self.assertEqual(self.done_before(), 0)
 
     def test_wrong_options_are_refused(self):
-        self.put("masks/0.png")
+        self.write("masks/0.png")
         for options, said in (
                 (["--masks", "none"], "--masks none: not found"),
                 (["--ignore-mask-label", "1"], "--ignore-mask-label 1: is only for --masks"),
@@ -359,11 +311,11 @@ class Masks(FilesCase):
             self.assertEqual(self.refused("--masks", "masks", option),
                              f"{option.replace('=', ' ', 1)}: the label of --masks is given by "
                              "--ignore-mask-label of reconstruct")
-        self.put("out/colmap_masks/0.png")
+        self.write("out/colmap_masks/0.png")
         self.assertIn("lies in the folder that this run writes", self.refused("--masks", "out/colmap_masks"))
 
 
-class OutOfDate(FilesCase):
+class OutOfDate(StandIns):
     """Inputs that changed, and results of earlier runs."""
 
     def test_changed_files_below_relative_paths_are_noticed(self):
@@ -374,31 +326,30 @@ class OutOfDate(FilesCase):
                 ("TextureMesh", "--texture=--mask-path own", "own/deep/0.png", 9),
                 ("RefineMesh", "--refine-mesh=--scales 1", "RefineMesh.cfg", 8)):
             shutil.rmtree(self.folder / "out", ignore_errors=True)
-            self.put(file)
+            self.write(file)
             self.succeeds(option)
-            self.assertEqual(self.succeeds(option).count("done before"), 11, program)
-            self.put(file, "changed")
-            self.assertEqual(self.succeeds(option).count("done before"), done, program)
+            self.assertEqual(self.done_before(option), 11, program)
+            self.write(file, "changed")
+            self.assertEqual(self.done_before(option), done, program)
 
     def test_masks_that_a_file_of_options_names_are_noticed(self):
-        self.put("out/DensifyPointCloud.cfg", "# masks\nmask-path = own\n")
-        self.put("out/own/0.png")
+        self.write("out/DensifyPointCloud.cfg", "# masks\nmask-path = own\n")
+        self.write("out/own/0.png")
         os.symlink(self.folder / "linked", self.folder / "out" / "own" / "more")
-        self.put("linked/1.png")
+        self.write("linked/1.png")
         self.succeeds()
         for file in ("out/own/0.png", "linked/1.png", "out/DensifyPointCloud.cfg"):
-            self.assertEqual(self.succeeds().count("done before"), 11)
-            self.put(file, f"changed mask-path = own {file}")
-            self.assertEqual(self.succeeds().count("done before"), 6, file)
-            self.put("out/DensifyPointCloud.cfg", "# masks\nmask-path = own\n")
+            self.assertEqual(self.done_before(), 11)
+            self.write(file, f"changed mask-path = own {file}")
+            self.assertEqual(self.done_before(), 6, file)
+            self.write("out/DensifyPointCloud.cfg", "# masks\nmask-path = own\n")
             self.succeeds()
 
     def test_an_output_of_a_program_is_not_its_input(self):
-        with (self.folder / "DensifyPointCloud").open("a") as script:
-            script.write("mkdir -p out/export; date +%N > out/export/a; date +%N > out/log\n")
+        self.add_to("DensifyPointCloud", "mkdir -p out/export; date +%N > out/export/a; date +%N > out/log\n")
         options = ["--densify=--pinhole-export export --log-file=log"]
         self.succeeds(*options)
-        self.assertEqual(self.succeeds(*options).count("done before"), 11)
+        self.assertEqual(self.done_before(*options), 11)
 
     def test_an_earlier_mesh_that_is_out_of_date_is_not_taken(self):
         with unittest.mock.patch("builtins.print"):
@@ -436,9 +387,8 @@ class OutOfDate(FilesCase):
 
     def test_tiles_of_an_earlier_run_are_removed(self):
         tile = self.folder / "out" / "scene_textured.tile3-4.glb"
-        with (self.folder / "TextureMesh").open("a") as script:
-            script.write("touch out/scene_textured.tile1-4.glb; [ -e once ] || touch once "
-                         "out/scene_textured.tile3-4.glb\n")
+        self.add_to("TextureMesh", "touch out/scene_textured.tile1-4.glb; [ -e once ] || touch once "
+                    "out/scene_textured.tile3-4.glb\n")
         self.succeeds("--tiles", "4")
         self.assertTrue(tile.exists())
         self.succeeds("--tiles", "4", "--texture=--outlier-threshold 0.1")
@@ -447,18 +397,18 @@ class OutOfDate(FilesCase):
     def test_maps_of_other_options_are_removed(self):
         self.succeeds()
         for name in ("scene_map.hillshade.tif", "scene_map.contours.geojson"):
-            self.put(f"out/{name}")
+            self.write(f"out/{name}")
         self.succeeds("--map=--hillshade")
         self.assertEqual([path.name for path in (self.folder / "out").glob("scene_map.*")
                           if path.read_text() == "mine"], [])
 
     def test_files_of_the_user_beside_results_stay(self):
         self.succeeds()
-        kept = [self.put(f"out/{name}") for name in
+        kept = [self.write(f"out/{name}") for name in
                 ("scene_map.qgz", "scene_map.dem.tif.aux.xml", "scene_textured_cleaned.ply",
                  "scene_textured.blend", "scene_textured0 edited.png",
                  "scene_textured_material_0 edited_map_Kd.png")]
-        textures = [self.put(f"out/scene_textured{end}.png") for end in
+        textures = [self.write(f"out/scene_textured{end}.png") for end in
                     ("1", "_material_0_map_Kd", "_material_12_map_Kd", "_gltf0", "_gltf12")]
         self.succeeds("--texture=--outlier-threshold 0.1")
         self.assertEqual([path.name for path in kept if not path.exists()], [])

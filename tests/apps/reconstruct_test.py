@@ -8,15 +8,14 @@ import pathlib
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 import unittest
 
-from programs import BIN, main, read, run
+from pipeline_folder import reconstruct_command, simulate
+from programs import BIN, main, read
 from support import colmap_text
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
 STEPS = ["features", "lens", "matches", "poses", "refine", "import", "densify", "mesh",
          "refine-mesh", "texture", "map", "evaluate"]
 PAGE = pathlib.Path(BIN).resolve().parent / "share" / "axialmvs" / "view" / "viewer.js"
@@ -30,10 +29,7 @@ class Reconstruct(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory(prefix="axial_")
         cls.scene = pathlib.Path(cls.folder.name) / "scene"
-        made = run("SimulateUnderwater", "--preset", "closeup", "--views", 6, "--width", 640,
-                   "--height", 480, "--coarseness", 4, "--samples", 2, "--truth", 0, "--medium", "water",
-                   "-o", cls.scene)
-        assert made.returncode == 0, made.stderr
+        simulate(cls.scene, "closeup", 6, (640, 480), samples=2)
         cls.positions = cls.scene / "positions.txt"
         cls.positions.write_text(colmap_text.positions(cls.scene / "sparse"))
 
@@ -52,11 +48,10 @@ class Reconstruct(unittest.TestCase):
         return subprocess.CompletedProcess([], process.returncode, said, complaint)
 
     def command(self, out, *more):
-        return [sys.executable, str(SCRIPT), "--images", str(self.scene / "water"), "--lens",
-                str(self.scene / "sparse" / "cameras.txt"), "--housing",
-                str(self.scene / "housing.json"), "-o", out.name, "--truth",
-                str(self.scene / "mesh.ply"), "--scale-from", f"positions:{self.positions}",
-                "--programs", BIN, *more]
+        return reconstruct_command(
+            "--truth", self.scene / "mesh.ply", "--scale-from", f"positions:{self.positions}", *more,
+            source=("--images", self.scene / "water"), lens=self.scene / "sparse" / "cameras.txt",
+            housing=self.scene / "housing.json", out=out.name)
 
     def killed_at(self, step, out):
         """Kills the pipeline with all its children soon after `step` began. Returns its output

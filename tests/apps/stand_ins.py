@@ -2,16 +2,13 @@
 """apps/pipeline/reconstruct with stand-ins for the programs, in a folder of its own."""
 
 import os
-import pathlib
 import select
 import subprocess
-import sys
-import tempfile
-import unittest
 
+from pipeline_folder import InFolder, reconstruct_command
 from programs import grey_png
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
+from axial_pipeline.programs import NAMES
 
 
 def photograph(number):
@@ -52,32 +49,29 @@ esac
 """
 
 
-class StandIns(unittest.TestCase):
+class StandIns(InFolder):
     """The whole script, with stand-in programs that end at once or sleep."""
 
     source = ("--images", "images")
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="axial_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name).resolve()
-        for name in ("colmap", "RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud",
-                     "ReconstructMesh", "RefineMesh", "TextureMesh", "MapSurface", "CompareSurveys",
-                     "ViewScene"):
-            (self.folder / name).write_text(STAND_IN)
-            (self.folder / name).chmod(0o755)
+        super().setUp()
+        self.put_on_path()
+        for name in ("colmap", *NAMES):
+            self.write(name, STAND_IN).chmod(0o755)
         for name in ("lens", "housing"):
-            (self.folder / name).touch()
-        (self.folder / "images").mkdir()
-        for number, photograph in enumerate(PHOTOGRAPHS):
-            (self.folder / "images" / f"{number}.png").write_bytes(photograph)
+            self.write(name, "")
+        for number, content in enumerate(PHOTOGRAPHS):
+            self.write(f"images/{number}.png", content)
+
+    def add_to(self, program, script):
+        """Lets a stand-in do more."""
+        with (self.folder / program).open("a") as file:
+            file.write(script)
 
     def start(self, *more):
-        process = subprocess.Popen(
-            [sys.executable, str(SCRIPT), *self.source, "--lens", "lens", "--housing",
-             "housing", "-o", "out", "--programs", ".", *more], cwd=self.folder, text=True,
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            env={**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}"})
+        process = subprocess.Popen(reconstruct_command(*more, source=self.source, programs="."), cwd=self.folder,
+                                   text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         return process
@@ -86,6 +80,40 @@ class StandIns(unittest.TestCase):
         process = self.start(*more)
         said, complaint = process.communicate(timeout=60)
         return subprocess.CompletedProcess([], process.returncode, said, complaint)
+
+    def succeeds(self, *options):
+        """Returns what the run said."""
+        ended = self.ended(*options)
+        self.assertEqual((ended.returncode, ended.stderr), (0, ""), options)
+        return ended.stdout
+
+    def done_before(self, *options):
+        """How many steps a run does not repeat."""
+        return self.succeeds(*options).count("done before")
+
+    def everything(self):
+        """All names below the folder, with the contents of files."""
+        return {path: path.read_bytes() if path.is_file() else None for path in self.folder.rglob("*")}
+
+    def refused(self, *options):
+        """Checks that the run ends in its first second, with one line, and changes nothing. Returns the
+        line."""
+        before = self.everything()
+        ended = self.ended(*options)
+        self.assertEqual((ended.returncode, ended.stderr.count("\n")), (1, 1), ended.stderr)
+        self.assertTrue(ended.stderr.startswith("reconstruct: "), ended.stderr)
+        self.assertNotIn("Traceback", ended.stderr)
+        self.assertEqual(self.everything(), before)
+        return ended.stderr.removeprefix("reconstruct: ").rstrip("\n")
+
+    def commands(self):
+        """The command lines of all programs so far."""
+        file = self.folder / "commands"
+        return file.read_text().splitlines() if file.exists() else []
+
+    def command_of(self, program):
+        """The last command line of a program."""
+        return [line for line in self.commands() if line.startswith(program + " ")][-1]
 
     def held_at(self, program, prefix="pipe"):
         """Starts a run that stays in the step of this program. Returns the run and the pipe."""

@@ -2,24 +2,19 @@
 """Features that stand still in all photographs are found in COLMAP's database, and a mask is offered."""
 
 import array
-import contextlib
 import json
 import random
-import sqlite3
 import zlib
 
+from colmap_databases import add_photograph, make_tables
 from pipeline_folder import InFolder
 from programs import main
 from stand_ins import StandIns
 
 from axial_pipeline import still_features
+from axial_pipeline.database import opened
 
 WIDTH, HEIGHT, PHOTOGRAPHS, MOVING = 640, 480, 10, 800
-# The tables of COLMAP 3.8 that are read.
-TABLES = """CREATE TABLE cameras (camera_id INTEGER, width INTEGER, height INTEGER);
-    CREATE TABLE images (image_id INTEGER, name TEXT, camera_id INTEGER);
-    CREATE TABLE keypoints (image_id INTEGER, rows INTEGER, cols INTEGER, data BLOB);
-    CREATE TABLE descriptors (image_id INTEGER, data BLOB);"""
 
 
 def descriptor(rng):
@@ -44,9 +39,8 @@ def write_database(path, still, share=1.0, columns=6):
     rng = random.Random(5)
     scene = [descriptor(rng) for _ in range(MOVING)]
     at_rest = [(x, y, descriptor(rng)) for x, y in still]
-    with contextlib.closing(sqlite3.connect(path)) as connection, connection:
-        connection.executescript(TABLES)
-        connection.execute("INSERT INTO cameras VALUES (1, ?, ?)", (WIDTH, HEIGHT))
+    with opened(path) as connection:
+        make_tables(connection, (WIDTH, HEIGHT))
         for image in range(PHOTOGRAPHS):
             features = [(*place(rng), noisy(one, rng)) for one in scene]
             if image < share * PHOTOGRAPHS:
@@ -54,11 +48,8 @@ def write_database(path, still, share=1.0, columns=6):
                              for x, y, one in at_rest]
             shape = {2: [], 4: [2, 0], 6: [2, 0, 0, 2]}[columns]
             numbers = array.array("f", [v for x, y, _ in features for v in (x, y, *shape)])
-            connection.execute("INSERT INTO images VALUES (?, ?, 1)", (image, f"{image}.png"))
-            connection.execute("INSERT INTO keypoints VALUES (?, ?, ?, ?)",
-                               (image, len(features), columns, numbers.tobytes()))
-            connection.execute("INSERT INTO descriptors VALUES (?, ?)",
-                               (image, b"".join(bytes(one) for *_, one in features)))
+            add_photograph(connection, image, f"{image}.png", columns, numbers.tobytes(),
+                           b"".join(bytes(one) for *_, one in features))
     return path
 
 
@@ -108,7 +99,7 @@ class StillFeatures(InFolder):
         whole = self.database(ARM).read_bytes()
         for change in ("data = x'0102'", "data = NULL", "data = x''", "cols = 1", "data = 'text'"):
             path = self.write("damaged.db", whole)
-            with contextlib.closing(sqlite3.connect(path)) as connection, connection:
+            with opened(path) as connection:
                 connection.execute(f"UPDATE keypoints SET {change}")
             self.assertIsNone(still_features.find(path), change)
 
@@ -136,15 +127,12 @@ class InARun(StandIns):
     def setUp(self):
         super().setUp()
         write_database(self.folder / "still.db", ARM)
-        with (self.folder / "colmap").open("a") as script:
-            script.write('[ "$1" != feature_extractor ] || cp still.db out/features.db\n')
+        self.add_to("colmap", '[ "$1" != feature_extractor ] || cp still.db out/features.db\n')
 
     def test_they_are_told_before_matching_and_a_mask_is_offered(self):
         out = self.folder / "out"
-        ended = self.ended("--until", "cloud")
-        self.assertEqual(ended.returncode, 0, ended.stderr)
-        mask = out / "still_features.png"
-        said = ended.stdout[:ended.stdout.index("] matches")]
+        mask, said = out / "still_features.png", self.succeeds("--until", "cloud")
+        said = said[:said.index("] matches")]
         self.assertIn("warning: 10 features stand still in the photographs", said)
         self.assertRegex(said, r"x 4\d\d to 5\d\d, y 3\d\d to 4\d\d px: 10 features at rest in 100% of the")
         self.assertIn(f"give --masks {mask}", said)
@@ -153,8 +141,7 @@ class InARun(StandIns):
         again = self.ended("--until", "cloud", "--masks", str(mask))
         self.assertIn("The masks of --masks do not cover them", again.stdout)  # the stand-in ignores masks
         self.assertTrue(mask.exists())
-        again = self.ended("--until", "cloud", "--masks", str(mask))
-        self.assertEqual(again.stdout.count("done before"), 8, again.stdout)
+        self.assertEqual(self.done_before("--until", "cloud", "--masks", str(mask)), 8)
 
     def test_the_mask_of_an_earlier_run_goes_when_nothing_is_at_rest(self):
         self.ended("--until", "cloud")

@@ -36,26 +36,16 @@ class WithVideo(StandIns):
 
     def put_program(self, text):
         self.program.unlink(missing_ok=True)
-        self.program.write_text(text)
-        self.program.chmod(0o755)
+        self.write("ExtractFrames", text).chmod(0o755)
 
-    def commands(self):
-        path = self.folder / "commands"
-        lines = path.read_text().splitlines() if path.exists() else []
-        path.unlink(missing_ok=True)
+    def new_commands(self):
+        """The commands since the last call."""
+        lines = self.commands()
+        (self.folder / "commands").unlink(missing_ok=True)
         return lines
 
-    def succeeds(self, *more):
-        result = self.ended(*more)
-        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        return result.stdout
-
     def refuses(self, expected, *more):
-        result = self.ended(*more)
-        self.assertNotEqual(result.returncode, 0)
-        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
-        self.assertIn(expected, result.stderr)
-
+        self.assertIn(expected, self.refused(*more))
 
     def stops_in_the_step(self, expected, *more):
         result = self.ended(*more)
@@ -68,7 +58,7 @@ class WithVideo(StandIns):
 class Runs(WithVideo):
     def test_frames_are_the_photographs_of_the_run(self):
         said = self.succeeds("--until", "poses", "--frames=--motion 0.2")
-        lines = self.commands()
+        lines = self.new_commands()
         self.assertEqual(lines[0], f"{COMMAND} --motion 0.2".format(self.folder))
         self.assertIn(f"--image_path {self.folder}/out/frames", lines[1])
         for place in (said, (self.folder / "out" / "report.md").read_text()):
@@ -77,24 +67,24 @@ class Runs(WithVideo):
 
     def test_a_second_run_does_not_choose_again(self):
         self.succeeds("--until", "poses")
-        self.commands()
+        self.new_commands()
         said = self.succeeds("--until", "poses")
         self.assertIn("frames: done before", said)
         self.assertIn("3 of 90 frames", said)
-        self.assertEqual(self.commands(), [])
+        self.assertEqual(self.new_commands(), [])
 
     def test_another_clip_or_option_is_a_new_beginning(self):
         self.succeeds("--until", "poses")
         old = self.folder / "out" / "frames" / "dive" / "frame_000009.png"
         for change in (lambda: (self.folder / "dive.avi").write_bytes(b"another"), lambda: None):
             shutil.copy(self.folder / "images" / "0.png", old)
-            self.commands()
+            self.new_commands()
             change()
             self.succeeds("--until", "poses", "--frames=--png")
-            self.assertEqual([line.split()[0] for line in self.commands()][:2], ["ExtractFrames", "colmap"])
+            self.assertEqual([line.split()[0] for line in self.new_commands()][:2], ["ExtractFrames", "colmap"])
             self.assertFalse(old.exists())
             self.succeeds("--until", "poses", "--frames=")
-            self.assertEqual(self.commands()[0], COMMAND.format(self.folder))
+            self.assertEqual(self.new_commands()[0], COMMAND.format(self.folder))
 
     def test_a_killed_run_continues(self):
         self.put_program(STAND_IN.replace("\necho '{", "\n[ -e go ] || kill -9 $$\necho '{"))
@@ -124,12 +114,15 @@ class Refused(WithVideo):
         own.touch()
         self.refuses("frames: no record of an earlier run names this file")
         self.assertTrue(own.exists())
-        self.assertEqual(self.commands(), [])
+        self.assertEqual(self.new_commands(), [])
 
     def test_wrong_clips_and_options(self):
         self.refuses("--video no.avi: not found", "--video", "no.avi")
         self.refuses("--video images: is not a file", "--video", "images")
-        self.refuses("--scale-from images:a,b: must give two ends", "--scale-from", "images:a,b")
+        ended = self.ended("--scale-from", "images:a,b")  # after the frames were chosen
+        self.assertEqual((ended.returncode, ended.stderr.count("\n")), (1, 1), ended.stderr)
+        self.assertIn("--scale-from images:a,b: must give two ends", ended.stderr)
+        shutil.rmtree(self.folder / "out")
         self.program.unlink()
         self.refuses("ExtractFrames not found; build the programs first")
 
@@ -148,7 +141,8 @@ class Refused(WithVideo):
         self.assertIn("photographs", self.succeeds("--check"))
 
     def test_an_error_of_the_program_is_that_of_the_run(self):
-        self.put_program(STAND_IN.replace("\nmkdir", "\necho 'ExtractFrames: dive.avi: is not a video' >&2; exit 1\nmkdir"))
+        self.put_program(STAND_IN.replace(
+            "\nmkdir", "\necho 'ExtractFrames: dive.avi: is not a video' >&2; exit 1\nmkdir"))
         self.stops_in_the_step("dive.avi: is not a video")
 
 

@@ -5,10 +5,11 @@ only the standard library.
 reconstruct    photographs taken under water to a cloud: the command axial-reconstruct
 colmap_model   photographs to a COLMAP model: the command axial-colmap-model
 demo           a simulated scene reconstructed in three ways, compared with the truth
-colmap, lens   COLMAP's commands, its models, and the lens that it starts with
+colmap         COLMAP's commands and its models
 programs       commands of AxialMVS's programs
 running        running commands, with logs
 cluster, jobs  reconstruct as a workflow of jobs, for the Snakefile beside the package
 one_step       what one job of the workflow does
+step_kinds     what is known of every step before it runs
 steps          steps that are not repeated when a killed run is started again
 """

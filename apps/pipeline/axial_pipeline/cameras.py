@@ -14,8 +14,9 @@ import pathlib
 
 from . import files, lenses
 from .failure import Failure
+from .files import few, write_names
 from .lenses import Lens
-from .photographs import few, refuse_other_sizes
+from .photographs import refuse_other_sizes
 
 FOLDER = "cameras"
 LENSES, HOUSING = "lenses.txt", "housing.json"
@@ -158,7 +159,7 @@ def of(given, images):
     refuse_if_many(given, left_out, len(images))
     if len(cameras) == len(found) == len(groups) == 1 and not cameras[0].words:
         return [], []
-    return cameras, [*(f"warning: {len(names)} photographs are left out ({few(list(names))}): they are {reason}"
+    return cameras, [*(f"warning: {len(names)} photographs are left out ({few(names)}): they are {reason}"
                        for names, reason in left_out),
                      *(f"warning: no photograph belongs to the lens of {lens.in_words()}"
                        for lens in found if lens not in chosen.values())]
@@ -170,7 +171,7 @@ def refuse_if_many(given, left_out, count):
     if missing >= MOST_LEFT_OUT * count:
         names, reason = left_out[0]
         raise Failure(f"--lens {', '.join(given.lenses)}: has no lens for {missing} of {count} photographs: "
-                      f"{few(list(names))} {'is' if len(names) == 1 else 'are'} {reason}")
+                      f"{few(names)} {'is' if len(names) == 1 else 'are'} {reason}")
 
 
 def lines_about(cameras):
@@ -252,7 +253,7 @@ def write(given, out, quarters=1):
     if housing:
         files.write(folder / HOUSING, json.dumps(housing, indent=1))
     for number, camera in enumerate(given.cameras, 1):
-        files.write(list_of(out, number), "".join(f"{name}\n" for name in camera.names))
+        write_names(list_of(out, number), camera.names)
 
 
 def list_of(out, number):

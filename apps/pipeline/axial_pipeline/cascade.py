@@ -3,12 +3,10 @@
 the largest features only. Where these overlap, photographs are matched with all features. Then follow pairs that
 see the same part of a third photograph, until nothing is added."""
 
-import shlex
-
 from . import colmap, database, files, overview, pair_choice, positions
 from .option_files import find_option
 from .programs import words_of
-from .running import logged
+from .running import logged, tell, told
 from .steps import Step
 
 OVERVIEW, CANDIDATES, PAIRS = "overview.db", "overview_pairs.txt", "match_pairs.txt"
@@ -63,11 +61,9 @@ class Cascade:
         """Matches pairs with all features. COLMAP skips those that it has matched before. `number`: of the
         round."""
         colmap.write_pairs(self.pairs, pairs)
-        command = [str(word) for word in colmap.matches(
-            self.full, "cascade", more=[*colmap.listed_pairs(self.pairs), *self.words])]
-        print(f"    {len(pairs)} {'more ' if number > 1 else ''}pairs with all features\n    {shlex.join(command)}",
-              flush=True)
-        logged(command, self.full.parent / "logs" / f"matches-{number}.log", "matches")
+        tell(f"{len(pairs)} {'more ' if number > 1 else ''}pairs with all features")
+        command = colmap.matches(self.full, "cascade", more=[*colmap.listed_pairs(self.pairs), *self.words])
+        logged(told(command), self.full.parent / "logs" / f"matches-{number}.log", "matches")
 
     def further(self, named, pairs, matched):
         """Pairs, not in `matched`, that could join parts which `pairs` leave apart: photographs outside the
@@ -96,7 +92,7 @@ class Cascade:
             wanted = overview.ordered([*pair_choice.missing(found, cells, matched | set(seen)),
                                        *self.further(named, found, matched)])
         database.take_names(self.full, self.features)
-        print(f"    matched {len(matched)} of {len(named) * (len(named) - 1) // 2} pairs", flush=True)
+        tell(f"matched {len(matched)} of {len(named) * (len(named) - 1) // 2} pairs")
         for path in files_beside(self.full):
             files.clear(path)
 

@@ -12,9 +12,9 @@ import subprocess
 
 from . import cameras, files, jobs
 from .failure import Failure
-from .ownership import ORDER
-from .running import die_with, ending
-from .steps import Records, chain_to, digest, is_done, names_from, read_record
+from .running import answer_of, die_with, ending
+from .step_kinds import ORDER
+from .steps import Records, is_done, names_from, with_chains
 
 
 def check(given):
@@ -31,17 +31,15 @@ def check(given):
 def forget_what_changed(todo, out):
     """Removes the records of the first step that is not done and of all later steps, and of depth
     maps and tiles that another command made."""
-    records, chain = Records(out / "steps"), []
-    for number, step in enumerate(todo):
-        chain = [*chain, step.command, step.fingerprint()]
+    records = Records(out / "steps")
+    for number, (step, chain) in enumerate(with_chains(todo)):
         if not is_done(step, chain, records):
             records.forget(names_from(number, todo, ORDER))
             break
-    parts = {"densify": ["plan", "depth-*", "densify-tile-*"], "mesh": ["mesh-tile-*"]}
-    for name in {step.name for step in todo} & set(parts):
-        chain = digest(chain_to(name, todo))
-        for record in [path for part in parts[name] for path in out.glob(jobs.done(part))]:
-            if read_record(record).get("chain") != chain:
+    for step in todo:
+        valid = jobs.parts_of(step.name, todo, out)
+        for record in jobs.records_of_parts(step.name, out):
+            if record.name.removesuffix(".done.json") not in valid:
                 files.clear(record)
     # The step "mesh" removes the files of its tiles.
     if not (out / jobs.done("mesh")).exists() and not any(out.glob("scene_dense_mesh.tiles*")):
@@ -65,7 +63,7 @@ def largest_node(given):
     if given.cluster == "local":
         memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") >> 20
         return {"cpus": len(os.sched_getaffinity(0)), "memory_mb": memory}
-    listed = subprocess.run(["sinfo", "--noheader", "--format", "%c %m"], capture_output=True, text=True)
+    listed = answer_of(["sinfo", "--noheader", "--format", "%c %m"])
     # A group of different nodes is shown with the smallest number and a plus sign.
     nodes = [[int(word.rstrip("+")) for word in line.split()] for line in listed.stdout.splitlines()]
     if listed.returncode != 0 or not nodes:
@@ -87,8 +85,7 @@ def command(given, out, node):
 def cancel_jobs(out):
     """Cancels the jobs of Slurm of a run in the folder `out`. While snakemake asks for the states of
     its jobs, an interruption lets it end without cancelling them."""
-    listed = subprocess.run(["squeue", "--noheader", "--user", getpass.getuser(), "--format", "%A %j"],
-                            capture_output=True, text=True)
+    listed = answer_of(["squeue", "--noheader", "--user", getpass.getuser(), "--format", "%A %j"])
     jobs_left = [line.split(maxsplit=1) for line in listed.stdout.splitlines()]
     numbers = [number for number, name in jobs_left if name.endswith(f"-{jobs.code_of(out)}")]
     if numbers:
@@ -124,7 +121,8 @@ def run_all(todo, given, out, lock):
     """Runs the steps that are not done, like steps.run_all(). `lock`: the open file that refuses other
     runs in the folder `out`. The times of the steps "densify" and "mesh" include the jobs of the
     depth maps and of the tiles, one after another."""
-    records, node = Records(out / "steps"), largest_node(given)
+    node = largest_node(given)
+    (out / "steps").mkdir(exist_ok=True)
     forget_what_changed(todo, out)
     forget_damaged_plan(out)
     plain = {**vars(given), "cameras": cameras.as_json(given.cameras)}
@@ -132,9 +130,4 @@ def run_all(todo, given, out, lock):
               "node": node}
     files.write(out / jobs.OPTIONS, json.dumps(config))
     run_to_its_end(command(given, out, node), given, out, lock)
-    seconds = {step.name: records.read(step, "done")["seconds"] for step in todo}
-    for name, parts in (("densify", ["depth-*", "densify-tile-*"]), ("mesh", ["mesh-tile-*"])):
-        for record in [path for part in parts for path in out.glob(jobs.done(part))]:
-            if name in seconds:
-                seconds[name] = round(seconds[name] + read_record(record)["seconds"], 1)
-    return seconds
+    return {step.name: jobs.seconds_of(step, todo, out) for step in todo}

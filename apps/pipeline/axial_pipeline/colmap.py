@@ -126,45 +126,46 @@ def is_model(folder):
     return any((folder / name).is_file() for name in ("images.bin", "images.txt"))
 
 
+def images_in(model):
+    """The ids of the images of a model, binary or text, by name. Empty if the file is damaged."""
+    try:
+        return images_in_binary(model) if (model / "images.bin").is_file() else images_in_text(model)
+    except (struct.error, ValueError, LookupError):
+        return {}
+
+
+def images_in_text(model):
+    lines = [line for line in (model / "images.txt").read_text().splitlines() if not line.startswith("#")]
+    # Every image has two lines. The second line is empty if the image has no observations.
+    fields = [line.split(" ", 9) for line in lines[::2] if line]
+    return {one[9]: int(one[0]) for one in fields}
+
+
+def images_in_binary(model):
+    data, found, at = (model / "images.bin").read_bytes(), {}, 8
+    for _ in range(struct.unpack_from("<Q", data)[0]):
+        end = data.index(b"\0", at + 64)  # after the id, the pose and the id of the camera
+        found[data[at + 64:end].decode(errors="replace")] = struct.unpack_from("<I", data, at)[0]
+        at = end + 9 + 24 * struct.unpack_from("<Q", data, end + 1)[0]
+    return found
+
+
 def registered(model):
     """The number of images of a model, binary or text."""
     if (model / "images.bin").is_file():
         with open(model / "images.bin", "rb") as file:
             return struct.unpack("<Q", file.read(8))[0]
-    lines = (model / "images.txt").read_text().splitlines()
-    # Every image has two lines. The second line is empty if the image has no observations.
-    return sum(bool(line) for line in [line for line in lines if not line.startswith("#")][::2])
-
-
-def names_in(model):
-    """The names of the images of a model, binary or text. Empty if the file is damaged."""
-    if not (model / "images.bin").is_file():
-        lines = (model / "images.txt").read_text().splitlines()
-        return {line.split(" ", 9)[9] for line in [line for line in lines if not line.startswith("#")][::2] if line}
-    data, names, at = (model / "images.bin").read_bytes(), set(), 8
-    try:
-        for _ in range(struct.unpack_from("<Q", data)[0]):
-            end = data.index(b"\0", at + 64)  # after the id, the pose and the id of the camera
-            names.add(data[at + 64:end].decode(errors="replace"))
-            at = end + 9 + 24 * struct.unpack_from("<Q", data, end + 1)[0]
-    except (struct.error, ValueError):
-        return set()
-    return names
+    return len(images_in(model))
 
 
 def no_poses(log):
     return Failure(f"COLMAP found no poses: see {log}")
 
 
-def by_size(models):
-    """The models in the folder `models` and their numbers of images, the largest model first."""
-    found = [(registered(model), model) for model in models.iterdir() if is_model(model)]
-    return [(model, count) for count, model in sorted(found, reverse=True)]
-
-
-def largest(models, log):
-    """The first of by_size(). `log`: the mapper's, for the Failure if there is no model."""
-    found = by_size(models)
-    if not found:
-        raise no_poses(log)
-    return found[0]
+def best_first(folders, wanted=frozenset()):
+    """The models in the folders of one or two runs of the mapper, each with its number of images: first the one
+    with the most images, of two with equally many the one that has more of the images `wanted`."""
+    found = [(registered(model), len(wanted & images_in(model).keys()), -number, model)
+             for number, folder in enumerate(folders) if folder.is_dir()
+             for model in sorted(folder.iterdir()) if is_model(model)]
+    return [(model, count) for count, _, _, model in sorted(found, key=lambda one: one[:3], reverse=True)]

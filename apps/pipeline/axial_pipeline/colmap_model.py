@@ -80,7 +80,10 @@ def colmap_model(images, work, calibration, threads=None, mask_command=None):
     print("  poses", flush=True)
     logged(colmap.mapper(database, images, models, calibration.refine, threads),
            work / "mapper.log", excuse=colmap.NO_MODEL)
-    best, count = colmap.largest(models, work / "mapper.log")
+    found = colmap.best_first([models])
+    if not found:
+        raise colmap.no_poses(work / "mapper.log")
+    best, count = found[0]
     best.rename(model)
     print(f"  {count} images registered", flush=True)
 

@@ -3,15 +3,18 @@
 
 import array
 import contextlib
+import dataclasses
+import heapq
 import math
 import sqlite3
 import struct
 
+from . import lenses
 from .failure import Failure
 
-LENS_MODELS = {"SIMPLE_PINHOLE": 0, "PINHOLE": 1, "SIMPLE_RADIAL": 2, "RADIAL": 3, "OPENCV": 4, "OPENCV_FISHEYE": 5,
-               "FULL_OPENCV": 6, "FOV": 7, "SIMPLE_RADIAL_FISHEYE": 8, "RADIAL_FISHEYE": 9, "THIN_PRISM_FISHEYE": 10}
 PAIR = 2147483647  # pair_id = PAIR * smaller image id + larger image id
+DESCRIPTOR = 128   # bytes: 4 x 4 cells of 8 directions
+DAMAGE = (sqlite3.Error, LookupError, TypeError, ValueError)  # of reading what is no database, or is damaged
 CELLS = 4          # along each side of a photograph, for the spread of features
 
 
@@ -31,10 +34,42 @@ def rows_of(file, query):
         return None
 
 
+def by_camera(connection):
+    """The size (width, height) [px] of each camera, and its photographs by name: pairs of id and name."""
+    for camera, *size in connection.execute("SELECT camera_id, width, height FROM cameras").fetchall():
+        yield tuple(size), connection.execute("SELECT image_id, name FROM images WHERE camera_id = ? ORDER BY name",
+                                              (camera,)).fetchall()
+
+
 def names(file):
     """The photographs by id; None if the file is no database of COLMAP."""
     rows = rows_of(file, "SELECT image_id, name FROM images")
     return None if rows is None else dict(rows)
+
+
+def columns_in(data, count):
+    """The `count` columns of numbers in COLMAP's keypoints: x, y [px] with pixel centres at 0.5, and often scale and
+    orientation, or an affine shape."""
+    numbers = array.array("f")
+    numbers.frombytes(data or b"")
+    return [numbers[k::count] for k in range(count)]
+
+
+def scales_in(columns):
+    """The scales of features [px]; 0 if the columns do not tell them."""
+    if len(columns) == 6:
+        return [math.sqrt(abs(a * d - b * c)) for a, b, c, d in zip(*columns[2:])]
+    return list(columns[2]) if len(columns) > 2 else [0.0] * len(columns[0])
+
+
+def coarsest(scales, count):
+    """The numbers of the `count` features with the largest scales, the largest first."""
+    return heapq.nsmallest(count, range(len(scales)), key=lambda number: (-scales[number], number))
+
+
+def cells_of(places, size):
+    """The cells of a photograph of `size` (width, height) that hold any of the `places` (x, y) [px]."""
+    return {(int(CELLS * x / size[0]), int(CELLS * y / size[1])) for x, y in places}
 
 
 class Features:
@@ -42,19 +77,43 @@ class Features:
     tenth of them lies, and the share of the photograph's cells that hold any."""
 
     def __init__(self, count, columns, data, size):
-        self.count = count
-        numbers = array.array("f")
-        numbers.frombytes(data or b"")
-        scales = sorted(map(self.scale, *(numbers[k::columns] for k in range(2, 6)))) if columns == 6 else []
+        self.count, self.size = count, size
+        columns = columns_in(data, columns)
+        scales = sorted(scales_in(columns)) if len(columns) == 6 else []
         self.fine = scales[len(scales) // 10] if scales else 0
-        width, height = self.size = size
-        cells = {(int(CELLS * x / width), int(CELLS * y / height))
-                 for x, y in zip(numbers[0::columns], numbers[1::columns])} if columns else set()
-        self.spread = len(cells) / CELLS ** 2
+        self.spread = len(cells_of(zip(*columns[:2]), size)) / CELLS ** 2
 
-    @staticmethod
-    def scale(a11, a12, a21, a22):
-        return math.sqrt(abs(a11 * a22 - a12 * a21))
+
+@dataclasses.dataclass
+class Keypoints:
+    """The features of a photograph, each with its place, scale and descriptor."""
+    xs: array.array  # [px], pixel centres at 0.5
+    ys: array.array
+    scales: list  # [px]
+    descriptors: bytes  # DESCRIPTOR each
+
+    def descriptor(self, number):
+        return self.descriptors[DESCRIPTOR * number:DESCRIPTOR * (number + 1)]
+
+    def places(self, numbers):
+        return ((self.xs[number], self.ys[number]) for number in numbers)
+
+    def coarsest(self, count):
+        """The `count` Keypoints with the largest scales."""
+        kept = coarsest(self.scales, count)
+        return Keypoints(*([column[k] for k in kept] for column in (self.xs, self.ys, self.scales)),
+                         b"".join(map(self.descriptor, kept)))
+
+
+def keypoints_of(connection, image):
+    """The Keypoints of the photograph with the id `image` in an open database. Fails with a LookupError, TypeError or
+    ValueError if they are damaged."""
+    row = connection.execute("SELECT keypoints.rows, keypoints.cols, keypoints.data, descriptors.data FROM keypoints "
+                             "JOIN descriptors USING (image_id) WHERE image_id = ?", (image,)).fetchone()
+    if not row or not row[0]:
+        return Keypoints(array.array("f"), array.array("f"), [], b"")
+    columns = columns_in(row[2], row[1])
+    return Keypoints(columns[0], columns[1], scales_in(columns), row[3])
 
 
 def features(file):
@@ -107,7 +166,7 @@ def set_lenses(file, lens_of):
             if lens:
                 model, parameters = lens
                 connection.execute("UPDATE cameras SET model = ?, params = ?, prior_focal_length = 1 WHERE "
-                                   "camera_id = ?", (LENS_MODELS[model],
+                                   "camera_id = ?", (list(lenses.MODELS).index(model),
                                                      struct.pack(f"<{len(parameters)}d", *parameters), camera))
 
 
@@ -161,9 +220,7 @@ def places_of_features(file):
         for image, columns, data, *size in connection.execute(
                 "SELECT image_id, cols, data, width, height FROM keypoints JOIN images USING (image_id) "
                 "JOIN cameras USING (camera_id) WHERE rows > 0"):
-            numbers = array.array("f")
-            numbers.frombytes(data)
-            yield image, numbers[0::columns], numbers[1::columns], size
+            yield image, *columns_in(data, columns)[:2], size
 
 
 def verified_matches(file):

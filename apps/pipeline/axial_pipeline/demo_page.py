@@ -3,10 +3,12 @@
 
 import base64
 import html
+import json
 import math
 import string
 
-from . import demo_mesh, demo_table
+from . import demo_table
+from .demo_runs import CHANGE
 
 
 def html_table(table, rows):
@@ -127,6 +129,26 @@ def mesh_pictures(meshes, photograph):
             image(photograph, f"View {name}, left out of texturing") + "</section>" + cards)
 
 
+def falsely_changed(results):
+    """The share of the compared area that the comparison calls changed."""
+    change = json.loads((results / f"{CHANGE}.change.json").read_text())
+    return change["area_changed"] / change["area_compared"]
+
+
+def survey(run, results):
+    """The part of the page about the survey of `run`: links to its files in `results`, the folder of the page."""
+    link = lambda name, text: f'<a href="{name}">{html.escape(text)}</a>'
+    parts = [f'{link(f"{run}_map.ortho.tif", "Orthomosaic")}, {link(f"{run}_map.dem.tif", "heights")} '
+             f'and {link(f"{run}_map.views.tif", "numbers of views")} are GeoTIFFs. The surveys (a) and '
+             f'(b) have the same ground; CompareSurveys calls {100 * falsely_changed(results):.2f} % of '
+             f'the area changed.']
+    if (results / f"{run}_page").exists():
+        parts.insert(0, f'{link(f"{run}_page/index.html", "The page of the survey")} shows the cloud '
+                        f'and its errors, the mesh, the photographs, the depth maps, the maps and the '
+                        f'changes, and measures distances, areas and volumes.')
+    return f"<p>{' '.join(parts)}</p>"
+
+
 PAGE = string.Template("""<!doctype html>
 <html lang="en"><head><meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
@@ -203,7 +225,7 @@ def page(rows, lines, meshes, photograph, survey, **texts):
     the HTML about the survey. `texts`: the scene's name and description, and the size of the
     images."""
     return PAGE.substitute(
-        texts, table=html_table(demo_table.table(lines), lines), histograms=histogram_svg(rows),
+        texts, table=html_table(demo_table.of_clouds(lines), lines), histograms=histogram_svg(rows),
         clouds=cloud_pictures(rows), depths=depth_pictures(rows),
-        mesh_table=html_table(demo_mesh.table(meshes), meshes), left_out=photograph.stem,
+        mesh_table=html_table(demo_table.of_meshes(meshes), meshes), left_out=photograph.stem,
         mesh_pictures=mesh_pictures(meshes, photograph), survey=survey)

@@ -33,30 +33,59 @@ def load_best_fit(work):
             "color": color, **numbers(work / key, "evaluation-moved.json")}
 
 
+def load_meshes(rows, runs):
+    """`rows`: of the clouds. Returns a row for the mesh of each of `runs`."""
+    return [{**{key: row[key] for key in ("run", "title", "mark", "color")}, **numbers_of_mesh(row["folder"])}
+            for row in rows if row["run"] in runs]
+
+
+def numbers_of_score(score):
+    return {"tolerance_m": score["tolerance"], "precision": score["precision"], "recall": score["recall"],
+            "f_score": score["f_score"]}
+
+
 def numbers(folder, file):
     result = json.loads((folder / file).read_text())
-    accuracy, score = result["accuracy"], result["scores"][0]
+    accuracy = result["accuracy"]
     return {"folder": folder, "histogram": result["accuracy_histogram"],
             "points": accuracy["count"], "mean_m": accuracy["mean"],
             "median_m": accuracy["median"], "rms_m": accuracy["rms"],
-            "tolerance_m": score["tolerance"], "precision": score["precision"],
-            "recall": score["recall"], "f_score": score["f_score"],
-            "seconds": float((folder / "seconds").read_text())}
+            **numbers_of_score(result["scores"][0]), "seconds": float((folder / "seconds").read_text())}
 
 
-def cells(row):
-    return [f"{row['mark']} {row['title']}", f"{row['points']:,}", f"{row['mean_m'] * 1e3:.2f}",
-            f"{row['median_m'] * 1e3:.2f}", f"{row['rms_m'] * 1e3:.2f}", f"{row['f_score']:.3f}",
-            f"{row['seconds']:.0f}"]
+def numbers_of_mesh(folder):
+    result = json.loads((folder / "mesh.json").read_text())
+    seen = result["seen"]
+    return {"folder": folder, "vertices": result["topology"]["vertices"], "median_m": seen["accuracy"]["median"],
+            **numbers_of_score(seen["scores"][0]), "normals_within_10": seen["normals"]["within_10_20_30"][0],
+            "psnr_db": result["render"]["psnr"], "seconds": float((folder / "mesh-seconds").read_text())}
 
 
-def headings(rows):
-    return ["", "points", "mean [mm]", "median [mm]", "RMS [mm]",
-            f"F-score at {rows[0]['tolerance_m'] * 1e3:g} mm", "seconds"]
+# The columns of a table: key of the number, heading, form of a cell, and factor of the number.
+F_SCORE, SECONDS = ("f_score", "F-score at {:g} mm", "{:.3f}", 1), ("seconds", "seconds", "{:.0f}", 1)
+MEDIAN = ("median_m", "median [mm]", "{:.2f}", 1e3)
+OF_CLOUDS = (("points", "points", "{:,}", 1), ("mean_m", "mean [mm]", "{:.2f}", 1e3), MEDIAN,
+             ("rms_m", "RMS [mm]", "{:.2f}", 1e3), F_SCORE, SECONDS)
+OF_MESHES = (("vertices", "vertices", "{:,}", 1), MEDIAN, ("precision", "precision", "{:.3f}", 1),
+             ("recall", "completeness", "{:.3f}", 1), F_SCORE,
+             ("normals_within_10", "normals to 10 deg", "{:.0f} %", 100), ("psnr_db", "PSNR [dB]", "{:.1f}", 1),
+             SECONDS)
 
 
-def table(rows):
-    return [headings(rows), *map(cells, rows)]
+def table(first, columns, rows):
+    """The headings, and the cells of each of `rows`. `first`: the heading of the names."""
+    tolerance = rows[0]["tolerance_m"] * 1e3
+    return [[first, *(heading.format(tolerance) for _, heading, _, _ in columns)],
+            *([f"{row['mark']} {row['title']}", *(form.format(row[key] * factor) for key, _, form, factor in columns)]
+              for row in rows)]
+
+
+def of_clouds(rows):
+    return table("", OF_CLOUDS, rows)
+
+
+def of_meshes(rows):
+    return table("mesh", OF_MESHES, rows)
 
 
 def text_table(table):
@@ -67,12 +96,11 @@ def text_table(table):
     return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:]])
 
 
-KEPT = ("run", "points", "mean_m", "median_m", "rms_m", "tolerance_m", "precision", "recall",
-        "f_score", "seconds")
+OF_THE_PAGE = ("title", "mark", "color", "meaning", "folder", "histogram")
 
 
 def json_table(lines, meshes, scene, size):
-    """The text of table.json. `meshes`: the numbers of the meshes."""
-    return json.dumps({"scene": scene, "size": size,
-                       "runs": [{key: row[key] for key in KEPT} for row in lines],
-                       "meshes": meshes}, indent=1) + "\n"
+    """The text of table.json: the numbers of the rows about clouds and meshes."""
+    runs, meshes = ([{key: value for key, value in row.items() if key not in OF_THE_PAGE} for row in rows]
+                    for rows in (lines, meshes))
+    return json.dumps({"scene": scene, "size": size, "runs": runs, "meshes": meshes}, indent=1) + "\n"

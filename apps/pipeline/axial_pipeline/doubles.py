@@ -9,10 +9,9 @@ import collections
 import contextlib
 import hashlib
 import pathlib
-import sqlite3
 
 from . import still_features
-from .database import CELLS
+from .database import DAMAGE, by_camera, cells_of, keypoints_of, opened
 from .failure import Failure
 from .photographs import LEAST
 
@@ -59,47 +58,28 @@ def identical(folder, names, preferred=()):
     return dict(sorted(found.items()))
 
 
-def coarsest(features, count):
-    """The coarsest of the features of a photograph (still_features.Features)."""
-    order = sorted(range(len(features.xs)), key=lambda k: (-features.scales[k], k))[:count]
-    return still_features.Features([features.xs[k] for k in order], [features.ys[k] for k in order],
-                                   [features.scales[k] for k in order],
-                                   b"".join(map(features.descriptor, order)))
-
-
-def cells_of(features, chosen, width, height):
-    return {(int(CELLS * features.xs[k] / width), int(CELLS * features.ys[k] / height)) for k in chosen}
-
-
-def is_alike(reference, other, width, height):
+def is_alike(reference, other, size):
     """Whether features all over the photograph `reference` are at the same place in `other`."""
-    move, numbers = still_features.move_of(width), range(len(reference.xs))
+    move, numbers = still_features.move_of(size[0]), range(len(reference.xs))
     if min(len(reference.xs), len(other.xs)) < LEAST_COARSE:
         return False
     counts = still_features.counts_of_rest(reference, [(other, still_features.cells_of(other, 2 * move))], move)
     same = [k for k in numbers if counts[k]]
-    return (len(same) >= LEAST_SHARE * len(numbers) and len(cells_of(reference, same, width, height)) >=
-            LEAST_SPREAD * len(cells_of(reference, numbers, width, height)))
+    return (len(same) >= LEAST_SHARE * len(numbers) and len(cells_of(reference.places(same), size)) >=
+            LEAST_SPREAD * len(cells_of(reference.places(numbers), size)))
 
 
-def by_camera(connection):
-    """Width, height, and (number, name) of the photographs of each camera, in the order of the files' names."""
-    for camera, width, height in connection.execute("SELECT camera_id, width, height FROM cameras").fetchall():
-        images = connection.execute("SELECT image_id, name FROM images WHERE camera_id = ?", (camera,)).fetchall()
-        yield width, height, sorted(images, key=lambda one: (pathlib.PurePath(one[1]).name, one[1]))
-
-
-def alike_in(photographs, width, height):
-    """As alike(), for the photographs of one camera: pairs of a name and Features."""
+def alike_in(photographs, size):
+    """As alike(), for the photographs of one camera: pairs of a name and Keypoints."""
     kept, found = [], {}
     for name, features in photographs:
-        among = coarsest(features, AMONG)
+        among = features.coarsest(AMONG)
         twin = next((other for other, reference in reversed(kept[-WINDOW:])
-                     if is_alike(reference, among, width, height)), None)
+                     if is_alike(reference, among, size)), None)
         if twin:
             found[name] = twin
         else:
-            kept.append((name, coarsest(features, COARSE)))
+            kept.append((name, features.coarsest(COARSE)))
     return found
 
 
@@ -107,12 +87,11 @@ def alike(file, left_out=()):
     """Photographs without motion since another one: the name of the one that is kept, by name. `file`: COLMAP's
     database with features. `left_out`: names that do not count. Nothing if `file` is no such database."""
     found = {}
-    with contextlib.suppress(sqlite3.Error, LookupError, TypeError, ValueError), \
-            contextlib.closing(sqlite3.connect(file)) as connection:
-        for width, height, images in by_camera(connection):
-            images = [(image, name) for image, name in images if name not in left_out]
-            twins = alike_in(((name, still_features.features_in(connection, image)) for image, name in images),
-                             width, height)
+    with contextlib.suppress(*DAMAGE), opened(file) as connection:
+        for size, images in by_camera(connection):
+            images = sorted((one for one in images if one[1] not in left_out),  # in the order of the files' names
+                            key=lambda one: (pathlib.PurePath(one[1]).name, one[1]))
+            twins = alike_in(((name, keypoints_of(connection, image)) for image, name in images), size)
             sizes = collections.Counter(twins.values())
             found |= {name: twin for name, twin in twins.items() if sizes[twin] + 1 <= MOST_ALIKE * len(images)}
     return found

@@ -3,13 +3,13 @@
 thousands of photographs are read in seconds."""
 
 import dataclasses
-import mmap
 import struct
 
 # What stands before the Exif data in a JPEG file and in a PNG file, near the beginning of the file.
 MARKS = (b"Exif\0\0", b"eXIf")
 SEARCHED = 1 << 17  # bytes
-MAKER, MODEL, ORIENTATION, EXIF_TABLE, FOCAL_LENGTH = 271, 272, 274, 0x8769, 0x920A  # tags
+MAKER, MODEL, ORIENTATION, EXIF_TABLE, FOCAL_LENGTH, GPS_TABLE = 271, 272, 274, 0x8769, 0x920A, 0x8825  # tags
+POSITION = {2, 4, 6}  # tags of latitude, longitude and altitude in the GPS table
 TEXT, SHORT, RATIONAL = 2, 3, 5  # kinds of values
 BYTES = {1: 1, TEXT: 1, SHORT: 2, 4: 4, RATIONAL: 8, 6: 1, 7: 1, 8: 2, 9: 4, 10: 8, 11: 4, 12: 8}  # by kind
 LONGEST_TEXT = 200
@@ -21,6 +21,7 @@ class Exif:
     camera: str = ""            # maker and model
     focal: float | None = None  # focal length [mm]
     orientation: int = 1        # 1: to be shown as stored; 3, 6, 8: turned; others: mirrored, too
+    has_position: bool = False  # whether latitude, longitude and altitude are there; COLMAP 3.8 uses only all three
 
 
 class Table:
@@ -38,9 +39,6 @@ class Table:
 
     def __contains__(self, tag):
         return tag in self.entries
-
-    def tags(self):
-        return self.entries.keys()
 
     def table(self, tag):
         """The table to which the entry `tag` leads."""
@@ -83,6 +81,13 @@ def camera_of(maker, model):
     return model if repeats else f"{maker} {model}".strip()
 
 
+def has_position(first):
+    try:
+        return GPS_TABLE in first and POSITION <= first.table(GPS_TABLE).entries.keys()
+    except (ValueError, struct.error):
+        return False
+
+
 def exif_in(data):
     """The Exif in the bytes of a file; the defaults if there is none, or if it is damaged."""
     try:
@@ -93,16 +98,6 @@ def exif_in(data):
         orientation = first.value(ORIENTATION)
         return Exif(camera_of(first.value(MAKER), first.value(MODEL)),
                     focal if isinstance(focal, (int, float)) and focal > 0 else None,
-                    orientation if orientation in range(1, 9) else 1)
+                    orientation if orientation in range(1, 9) else 1, has_position(first))
     except (ValueError, struct.error):
         return Exif()
-
-
-def table_of(photograph, use):
-    """use(Table) for the first table of a file; None if there is none, or if the file is unreadable."""
-    try:
-        with open(photograph, "rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-            first = first_table(data)
-            return None if first is None else use(first)
-    except (OSError, ValueError, struct.error):  # an empty, unreadable or broken file
-        return None

@@ -4,8 +4,8 @@
 import statistics
 
 from . import colmap, database, files
-from .photographs import few
-from .running import logged
+from .files import few
+from .running import logged, tell
 
 ENOUGH = 1000        # features of a photograph; with fewer, COLMAP's detector takes weaker ones, too
 WEAK = 0.001         # the threshold of weak features; COLMAP's own is 0.0067
@@ -29,7 +29,7 @@ def lacking(found, threshold):
     return [name for name, one in found.items() if one.count < ENOUGH and name not in names_of_blurred]
 
 
-def take_weak_features(features, command_of, out, tell=print):
+def take_weak_features(features, command_of, out, tell=tell):
     """Adds weak features to the photographs that have few, except blurred ones. Where there are too few to tell
     blur, thresholds in between come first, because noise is weaker than what is left of the scene.
     `features`: COLMAP's database. `command_of`: the detector's command by database, file with names of
@@ -39,7 +39,7 @@ def take_weak_features(features, command_of, out, tell=print):
         return
     wanted = lacking(found, WEAK)
     if wanted:
-        tell(f"    {len(wanted)} of {len(found)} photographs have few features, as in haze or over sand: weaker "
+        tell(f"{len(wanted)} of {len(found)} photographs have few features, as in haze or over sand: weaker "
              "ones are taken, too")
     for threshold in (*RUNGS, WEAK):
         sizes = {name: found[name].size for name in lacking(found, threshold)}
@@ -54,14 +54,20 @@ def take(features, sizes, command_of, threshold, out):
     low, names = out / LOW, out / "weak_features.txt"
     for path in colmap.database_files(low):
         files.clear(path)
-    for number, size in enumerate(sorted(set(sizes.values())), 1):  # COLMAP skips other sizes
-        files.write(names, "".join(f"{name}\n" for name in sizes if sizes[name] == size))
-        end = f"-{number}" if number > 1 else ""
-        logged(command_of(low, names, threshold), out / "logs" / f"weak-features{end}.log", "features")
+    detect(sizes, names, lambda listed: command_of(low, listed, threshold), out / "logs" / "weak-features.log")
     if database.names(low) is not None:
         database.take_features(features, low, sizes)
     for path in (*colmap.database_files(low), names):
         files.clear(path)
+
+
+def detect(sizes, listed, command_of, log):
+    """Runs COLMAP's detector for the photographs of each size by themselves, because COLMAP skips other sizes than
+    the first one. `sizes`: by name. `listed`: the file for their names. `command_of`: the detector by this file. `log`:
+    of the first size."""
+    for number, size in enumerate(sorted(set(sizes.values()), key=lambda one: one or (0, 0)), 1):
+        files.write_names(listed, [name for name in sizes if sizes[name] == size])
+        logged(command_of(listed), log.with_stem(f"{log.stem}-{number}") if number > 1 else log, "features")
 
 
 def blurred(found):
@@ -96,5 +102,5 @@ def lines_about(features):
                "little but haze")
     names, usual = blurred(found)
     if names:
-        yield (f"warning: {few(list(names))}: blurred (finest features {min(names.values()):.1f} px or more, "
+        yield (f"warning: {few(names)}: blurred (finest features {min(names.values()):.1f} px or more, "
                f"{usual:.1f} px in the others)")

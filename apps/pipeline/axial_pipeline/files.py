@@ -16,6 +16,11 @@ def write(path, content):
     temporary.rename(path)
 
 
+def write_names(path, names):
+    """Writes a line for each name, as COLMAP and the programs read lists of photographs."""
+    write(path, "".join(f"{name}\n" for name in names))
+
+
 def copy_once(source, target):
     """Copies a file. Does nothing if `target` exists."""
     if target.exists():
@@ -58,6 +63,22 @@ def read_object(path):
     except (OSError, ValueError, RecursionError):
         return {}
     return value if isinstance(value, dict) else {}
+
+
+def few(names, most=3):
+    """The first names, and how many more there are."""
+    names = list(names)
+    shown = ", ".join(names[:most])
+    return shown if len(names) <= most else f"{shown} and {len(names) - most} more"
+
+
+def existing(option, value, path=None, is_file=False):
+    """The `path` in the `value` of an option as text: absolute, without links. Fails if it is not there, or if it
+    must be a file and is none. `path`: of a value that says more."""
+    path = pathlib.Path(path or value)
+    if not (path.is_file() if is_file else path.exists()):
+        raise Failure(f"{option} {value}: {'file ' if is_file else ''}not found")
+    return str(resolved(option, path))
 
 
 def resolved(option, path):

@@ -3,32 +3,27 @@
 that they will get; names and values of --scale-from and --refine are compared with the photographs and ports."""
 
 import collections
-import csv
 import math
 import pathlib
 import re
-import subprocess
 import tempfile
 
 from . import cameras, colmap, estimates, files, lenses
 from .failure import Failure
+from .position_rows import split_fields
 from .programs import Programs, words_of
+from .running import answer_of
 
 # What --refine of RefinePoses takes, and the kind of port that a value needs.
 REFINED = {"normal": "flat", "distance": "flat", "centre": "dome", "thickness": "", "index": "", "focal": ""}
 ALONE = (["auto"], ["none"])  # other values of --refine
 KINDS = ("flat", "dome", "unknown")  # values of --housing instead of a file
 PREFIX = "axial_first_check_"  # of a folder that exists only during the checks
-MOST_SECONDS = 120
 
 
 def said_by(command):
     """Exit code and output of a command. The output is standard error if the command fails."""
-    try:
-        ended = subprocess.run([str(word) for word in command], capture_output=True, text=True, errors="replace",
-                               stdin=subprocess.DEVNULL, timeout=MOST_SECONDS)
-    except (OSError, subprocess.TimeoutExpired) as error:
-        return 127, str(error)
+    ended = answer_of(command)
     return ended.returncode, ended.stderr.strip() if ended.returncode else f"{ended.stdout}{ended.stderr}"
 
 
@@ -73,8 +68,7 @@ def command_of(name, given):
 
 
 def check_options_of_programs(given, programs_by_option):
-    """Lets the programs parse the options that they will get. `programs_by_option`: as MORE_OPTIONS of
-    reconstruct_options.py."""
+    """Lets the programs parse the options that they will get. `programs_by_option`: as step_kinds.OPTIONS."""
     for name, program in programs_by_option.items():
         words = words_of(name, given)
         command = command_of(name, given) or [pathlib.Path(given.programs) / program]
@@ -86,12 +80,15 @@ def check_options_of_programs(given, programs_by_option):
                           f"{reason_in(said, pathlib.Path(command[0]).name)}")
 
 
+def ports_in(housing):
+    """The ports in a housing file, by name; empty if they are not known here."""
+    ports = files.read_object(pathlib.Path(housing)).get("ports")
+    return {name: port for name, port in ports.items() if isinstance(port, dict)} if isinstance(ports, dict) else {}
+
+
 def kinds_of_ports(housing):
     """The kinds of ports in a housing file, or of the word in its place; empty if they are not known here."""
-    if housing in KINDS:
-        return {housing} - {"unknown"}
-    ports = files.read_object(pathlib.Path(housing)).get("ports")
-    return {port.get("type") for port in ports.values() if isinstance(port, dict)} if isinstance(ports, dict) else set()
+    return {housing} - {"unknown"} if housing in KINDS else {port.get("type") for port in ports_in(housing).values()}
 
 
 def check_refine(given):
@@ -103,15 +100,6 @@ def check_refine(given):
         if needed and kinds and needed not in kinds:
             raise Failure(f"--refine {given.refine}: {word} belongs to a {needed} port, and --housing {given.housing} "
                           "has none")
-
-
-def fields_of(text, where):
-    """The fields of a list between commas, as libs/io/cameras/position_file.h splits them."""
-    try:
-        fields, = csv.reader([text], strict=True)
-    except (csv.Error, ValueError):
-        raise Failure(f"{where}: a double quote is not closed") from None
-    return fields
 
 
 def name_pairs(fields):
@@ -129,7 +117,9 @@ def check_scale(given, photographs):
     if kind not in ("images", "points") or not colon:
         raise Failure(f"--scale-from {text}: must begin with images:, points: or positions:")
     where = f"--scale-from {text}"
-    fields = fields_of(rest, where)
+    fields = split_fields(rest, ",")
+    if not fields:
+        raise Failure(f"{where}: a double quote is not closed")
     if len(fields) < 3 or kind == "points" and len(fields) > 3:
         raise Failure(f"{where}: must give two ends and the distance between them in metres")
     check_length(fields[-1], where)
@@ -159,7 +149,7 @@ def ports_in_words(housing):
     if housing in KINDS:
         yield f"{housing}: usual numbers, which the photographs correct"
         return
-    ports = files.read_object(pathlib.Path(housing)).get("ports", {})
+    ports = ports_in(housing)
     for name, port in ports.items():
         numbers = ", ".join(f"{key} {value}" for key, value in port.items()
                             if key in ("distance_m", "inner_radius_m", "n_water"))

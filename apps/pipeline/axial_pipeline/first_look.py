@@ -5,8 +5,6 @@ that are made smaller, in a folder that exists only meanwhile.
 If all photographs would take too long, pairs of neighbours by name are looked at, evenly spread over the dive."""
 
 import array
-import collections
-import contextlib
 import dataclasses
 import os
 import pathlib
@@ -14,10 +12,10 @@ import sqlite3
 import statistics
 import tempfile
 
-from . import colmap, database, doubles, estimates, features, files, left_out, still_features
+from . import colmap, database, estimates, features, left_out
 from .failure import Failure
 from .first_checks import PREFIX
-from .photographs import few
+from .files import few
 from .running import logged
 
 SIDE = 640            # the longer side of the photographs that are looked at [px]
@@ -63,14 +61,10 @@ def neighbours_in(names, chosen):
 def find_features(given, sizes, chosen, file):
     """Finds features in the photographs `chosen`. `file`: a new database. Returns the Features with COLMAP's
     threshold; the database gets weak features, too."""
-    folder, by_size = file.parent, collections.defaultdict(list)
-    for name in chosen:
-        by_size[sizes[name]].append(name)
+    folder, listed = file.parent, file.with_name("photographs.txt")
     command = lambda to, *more: colmap.features(to, given.images, "OPENCV", more=[*colmap.smaller(SIDE), *more])
-    for number, names in enumerate(by_size.values()):  # COLMAP skips other sizes
-        listed = folder / f"{number}.txt"
-        files.write(listed, "".join(f"{name}\n" for name in names))
-        logged(command(file, "--image_list_path", listed), folder / "logs" / f"features-{number}.log", "features")
+    features.detect({name: sizes[name] for name in chosen}, listed,
+                    lambda names: command(file, "--image_list_path", names), folder / "logs" / "features.log")
     plain = database.features(file) or {}
     features.take_weak_features(file, lambda to, names, threshold: command(
         to, *colmap.weak_features(names, threshold)), folder, tell=lambda line: None)
@@ -81,7 +75,7 @@ def keep_coarse(file):
     """Keeps the MATCHED coarsest features of each photograph in a database, so that COLMAP matches them soon."""
     with database.opened(file) as connection:
         for image, in connection.execute("SELECT image_id FROM keypoints WHERE rows > ?", (MATCHED,)).fetchall():
-            kept = doubles.coarsest(still_features.features_in(connection, image), MATCHED)
+            kept = database.keypoints_of(connection, image).coarsest(MATCHED)
             places = array.array("f", [value for place in zip(kept.xs, kept.ys) for value in place])
             connection.execute("UPDATE keypoints SET rows = ?, cols = 2, data = ? WHERE image_id = ?",
                                (MATCHED, places.tobytes(), image))
@@ -89,16 +83,16 @@ def keep_coarse(file):
                                (MATCHED, kept.descriptors, image))
 
 
-def share_of_cells(features_of, numbers, size):
+def share_of_cells(keypoints, numbers, size):
     """The part of the cells with features that holds features of these numbers."""
-    everywhere = doubles.cells_of(features_of, range(len(features_of.xs)), *size)
-    return len(doubles.cells_of(features_of, numbers, *size)) / max(1, len(everywhere))
+    everywhere = database.cells_of(zip(keypoints.xs, keypoints.ys), size)
+    return len(database.cells_of(keypoints.places(numbers), size)) / max(1, len(everywhere))
 
 
 def overlaps_in(file, pairs):
     """The part of both photographs that verified matches cover, by pair of names. `file`: COLMAP's database with
     matches."""
-    with contextlib.closing(sqlite3.connect(file)) as connection:
+    with database.opened(file) as connection:
         images = {name: (image, (width, height)) for name, image, width, height in connection.execute(
             "SELECT name, image_id, width, height FROM images JOIN cameras USING (camera_id)")}
         matches = {pair: data for pair, data in connection.execute("SELECT pair_id, data FROM two_view_geometries")}
@@ -107,7 +101,7 @@ def overlaps_in(file, pairs):
             ends = sorted(images[name] for name in pair)
             numbers = array.array("I", matches.get(database.PAIR * ends[0][0] + ends[1][0]) or b"")
             found[pair] = statistics.mean(
-                share_of_cells(still_features.features_in(connection, image), numbers[k::2], size)
+                share_of_cells(database.keypoints_of(connection, image), numbers[k::2], size)
                 for k, (image, size) in enumerate(ends))
     return found
 

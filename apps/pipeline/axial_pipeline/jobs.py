@@ -5,7 +5,6 @@ Slurm is one call of one_step.py."""
 
 import argparse
 import hashlib
-import json
 import math
 import pathlib
 import re
@@ -15,7 +14,8 @@ import sys
 from . import cameras, files
 from .failure import Failure
 from .option_files import find_option
-from .steps import Step, chain_to
+from .step_kinds import KINDS, NEEDS_OF_PLAN
+from .steps import Records, Step, chain_to, digest, read_record
 
 PACKAGE = pathlib.Path(__file__).resolve().parent
 OPTIONS = pathlib.Path("steps") / "options.json"  # below the folder of the output files
@@ -23,16 +23,6 @@ PLAN = pathlib.Path("steps") / "plan.json"
 WHOLE = "whole"  # in the place of a part, for all images
 MOST_CPUS = 16  # of a job
 
-# What the job of a step asks for at first: megabytes, megabytes an image, minutes, minutes an image.
-# The plan of DensifyPointCloud replaces these numbers for the step "densify".
-NEEDS = {"frames": (4000, 0, 60, 0.1), "masks": (2000, 0, 30, 0.05),
-         "features": (8000, 0, 30, 0.1), "lens": (2000, 0, 30, 0), "matches": (8000, 2, 60, 1),
-         "poses": (4000, 4, 60, 1),
-         "refine": (2000, 4, 60, 0.2), "import": (2000, 2, 30, 0.02), "plan": (2000, 2, 30, 0.02),
-         "densify": (4000, 0, 60, 0.2), "mesh": (8000, 4, 60, 0.5),
-         "refine-mesh": (8000, 4, 60, 1), "texture": (8000, 4, 60, 0.5), "map": (8000, 4, 60, 0.5),
-         "compare": (8000, 4, 30, 0.1), "page": (8000, 1, 30, 0.05),
-         "evaluate": (8000, 0, 60, 0)}
 PAIR_CPU_SECONDS = 0.9  # of COLMAP's matcher, for photographs of 6 megapixels
 SECONDS_TO_READ = 0.2  # an image and its depth map
 TILED = ("densify", "mesh")
@@ -46,6 +36,25 @@ def code_of(out):
 def done(name):
     """The record that a step is done, relative to the folder of the output files."""
     return f"steps/{name}.done.json"
+
+
+def records_of_parts(name, out):
+    """The records of all jobs that made parts of the step `name`."""
+    return [path for pattern in KINDS[name].parts for path in sorted(out.glob(done(pattern)))]
+
+
+def parts_of(name, todo, out):
+    """The records of the jobs that made parts of the step `name` of `todo` with its chain, by their names."""
+    found = {path: read_record(path) for path in records_of_parts(name, out)}
+    chain = digest(chain_to(name, todo)) if found else ""
+    return {path.name.removesuffix(".done.json"): record for path, record in found.items()
+            if record.get("chain") == chain}
+
+
+def seconds_of(step, todo, out):
+    """The time of a step that is done, with that of its jobs, one after another."""
+    records = (Records(out / "steps").read(step, "done"), *parts_of(step.name, todo, out).values())
+    return round(sum(one.get("seconds", 0) for one in records), 1)
 
 
 def read_plan(out):
@@ -127,7 +136,7 @@ class Survey:
 
     def tile(self, name):
         return Job(self.out, name + "-tile-{part}", self.node, [],
-                   lambda wildcards: self.asked_for_tile(name))
+                   lambda wildcards: self.asked(name, 1 if name == "densify" else min(1, 2 / self.tiles)))
 
     def tiles_of(self, name):
         """The records of the tiles of the step `name`."""
@@ -140,24 +149,18 @@ class Survey:
         first = self.tiles_of("mesh")[0]
         return [done("densify") if first == done(f"mesh-tile-{part}") else first]
 
-    def asked(self, name):
-        memory, memory_of_image, minutes, minutes_of_image = NEEDS[name]
+    def asked(self, name, share=1):
+        """Megabytes and minutes to ask for. `share`: the part of the images of which a job makes a tile, which has a
+        margin: a tile is counted as twice its share."""
         if name == "densify" and (self.out / PLAN).exists():
             return self.with_margin(self.planned()["fusion"])
-        more_minutes = minutes_of_image * self.images
+        memory, memory_of_image, minutes, minutes_of_image = NEEDS_OF_PLAN if name == "plan" else KINDS[name].needs
+        images, more_minutes = share * self.images, minutes_of_image * share * self.images
         if name == "matches" and self.matcher == "exhaustive":
             pairs = self.images * (self.images - 1) / 2
             # Twice, because processors differ in speed.
             more_minutes = 2 * PAIR_CPU_SECONDS * pairs / min(MOST_CPUS, self.node["cpus"]) / 60
-        return memory + memory_of_image * self.images, minutes + more_minutes
-
-    def asked_for_tile(self, name):
-        """A tile has a margin: it is counted as twice its share of the images."""
-        if name == "densify":
-            return self.asked(name)
-        memory, memory_of_image, minutes, minutes_of_image = NEEDS[name]
-        images = min(1, 2 / self.tiles) * self.images
-        return memory + memory_of_image * images, minutes + minutes_of_image * images
+        return memory + memory_of_image * images, minutes + more_minutes
 
     def planned(self):
         plan = read_plan(self.out)
@@ -201,11 +204,10 @@ class Survey:
         if tile:
             whole, chain = self.step(tile[1])
             command = [*without_export(whole.command), "--tile", tile[2].replace("of", "/")]
-            return Step(name, command, makes=self.out, reads=whole.reads, writes=whole.writes), chain
+            return Step(name, command, makes=self.out, reads=whole.reads), chain
         densify = self.steps[self.names.index("densify")]
         more = ["--plan", self.out / PLAN] if name == "plan" else part_options(name)
-        return (Step(name, [*without_export(densify.command), *more], makes=self.out,
-                     reads=densify.reads, writes=densify.writes),
+        return (Step(name, [*without_export(densify.command), *more], makes=self.out, reads=densify.reads),
                 chain_to("densify", self.steps))
 
 

@@ -7,7 +7,8 @@ tells them for certain. They match no photograph of the seabed, and poses.py nam
 
 from . import database, doubles, features
 from .failure import Failure
-from .photographs import few
+from .files import few
+from .running import tell
 
 BLURRED, DARK, DOUBLED = "blurred", "dark", "doubled"
 
@@ -45,4 +46,4 @@ def leave_out(found, file, doubled, needed=(), scale_from=""):
     for kind in (BLURRED, DARK, DOUBLED):
         names = sorted(name for name, one in wrong.items() if one[0] == kind)
         if names:
-            print(f"    {len(names)} {kind} photographs are left out (--keep-all keeps them): {few(names)}", flush=True)
+            tell(f"{len(names)} {kind} photographs are left out (--keep-all keeps them): {few(names)}")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Lenses in air: the files that hold them, and the lenses of photographs that were made smaller, turned or
-zoomed. The programs check lens files (check_inputs.py); here a file that they accept is read."""
+zoomed. The programs check lens files (first_checks.py); here a file that they accept is read."""
 
 import dataclasses
 import pathlib
@@ -8,13 +8,18 @@ import re
 import struct
 
 from .failure import Failure
-from .lens import DISTORTIONS, has_one_focal_length
 
 TANGENTIAL = ("OPENCV", "FULL_OPENCV", "THIN_PRISM_FISHEYE")  # p1 and p2 are the third and fourth distortion
 ASPECT_PIXELS = 1.5  # rounded sides change the ratio of the sides by this over the shortest side
 ZOOM_SIGMA = 0.03    # relative: cameras round the focal length in the Exif data
-MODELS = ("SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "OPENCV_FISHEYE", "FULL_OPENCV", "FOV",
-          "SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE", "THIN_PRISM_FISHEYE")  # by COLMAP's number
+# COLMAP's camera models in the order of their numbers: how many parameters of distortion follow focal lengths and
+# principal point.
+MODELS = {"SIMPLE_PINHOLE": 0, "PINHOLE": 0, "SIMPLE_RADIAL": 1, "RADIAL": 2, "OPENCV": 4, "OPENCV_FISHEYE": 4,
+          "FULL_OPENCV": 8, "FOV": 1, "SIMPLE_RADIAL_FISHEYE": 1, "RADIAL_FISHEYE": 2, "THIN_PRISM_FISHEYE": 8}
+
+
+def has_one_focal_length(model):
+    return model.startswith(("SIMPLE_", "RADIAL"))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -31,12 +36,17 @@ class Lens:
     def in_words(self):
         return f"{self.file}, camera {self.number}"
 
+    def colmap_parameters(self):
+        """The parameters in COLMAP's order."""
+        fx, fy, *rest = self.parameters
+        return [(fx + fy) / 2, *rest] if has_one_focal_length(self.model) else [fx, fy, *rest]
+
 
 def made(number, model, width, height, numbers, file, sigma=None):
     numbers = [float(one) for one in numbers]
     if has_one_focal_length(model):
         numbers.insert(0, numbers[0])
-    if len(numbers) != 4 + DISTORTIONS[model]:
+    if len(numbers) != 4 + MODELS[model]:
         raise ValueError
     return Lens(int(number), model, (int(width), int(height)), tuple(numbers), sigma, str(file))
 
@@ -44,16 +54,17 @@ def made(number, model, width, height, numbers, file, sigma=None):
 def in_text(file):
     lines = [line.split() for line in file.read_text(encoding="utf-8-sig").splitlines()]
     sigmas = {int(words[2]): float(words[3]) for words in lines if words[:2] == ["#", "focal_sigma"]}
+    cameras = [words for words in lines if words and not words[0].startswith("#")]
     return [made(number, model, width, height, numbers, file, sigmas.get(int(number)))
-            for number, model, width, height, *numbers in filter(None, lines) if not number.startswith("#")]
+            for number, model, width, height, *numbers in cameras]
 
 
 def in_binary(file):
-    data, at, found = file.read_bytes(), 8, []
+    data, at, found, models = file.read_bytes(), 8, [], list(MODELS)
     for _ in range(struct.unpack_from("<Q", data)[0]):
-        number, model, width, height = struct.unpack_from("<iiQQ", data, at)
-        count = 4 + DISTORTIONS[MODELS[model]] - has_one_focal_length(MODELS[model])
-        found.append(made(number, MODELS[model], width, height, struct.unpack_from(f"<{count}d", data, at + 24), file))
+        number, kind, width, height = struct.unpack_from("<iiQQ", data, at)
+        count = 4 + MODELS[models[kind]] - has_one_focal_length(models[kind])
+        found.append(made(number, models[kind], width, height, struct.unpack_from(f"<{count}d", data, at + 24), file))
         at += 24 + 8 * count
     return found
 
@@ -145,10 +156,7 @@ def fitted(lens, size, quarters=1):
 
 def line_of(number, lens):
     """The line of a lens in cameras.txt."""
-    numbers = list(lens.parameters)
-    if has_one_focal_length(lens.model):
-        numbers[:2] = [(numbers[0] + numbers[1]) / 2]
-    return " ".join(map(str, (number, lens.model, *lens.size, *map(repr, numbers))))
+    return " ".join(map(str, (number, lens.model, *lens.size, *map(repr, lens.colmap_parameters()))))
 
 
 def text_of(lenses):

@@ -9,7 +9,7 @@ name and label that the programs accept (docs/formats.md, Masks)."""
 import pathlib
 
 from .failure import Failure
-from .files import resolved
+from .files import existing, resolved
 from .option_files import has_option
 
 FOLDER = "colmap_masks"  # below the output folder
@@ -34,9 +34,7 @@ def check(given):
     if label and not (label.isascii() and label.isdigit() and int(label) in LABELS):
         raise Failure(f"--ignore-mask-label {label}: must be a number from 0 to 65535")
     if given.masks:
-        if not pathlib.Path(given.masks).exists():
-            raise Failure(f"--masks {given.masks}: not found")
-        given.masks = str(resolved("--masks", given.masks))
+        given.masks = existing("--masks", given.masks)
         if pathlib.Path(given.masks).is_relative_to(resolved("--output", given.output) / FOLDER):
             raise Failure(f"--masks {given.masks}: lies in the folder that this run writes; move it")
 

@@ -2,15 +2,11 @@
 """The options --matcher and --vocabulary of `reconstruct`: which pairs of photographs COLMAP
 matches."""
 
-import contextlib
-import itertools
-import pathlib
-import sqlite3
-
-from . import cascade, colmap, files, gps, positions
-from .database import named_if_damaged
+from . import cascade, colmap, files, positions
+from .database import named_if_damaged, opened
 from .failure import Failure
 from .programs import words_of
+from .running import tell
 from .steps import Step
 
 MATCHERS = ("auto", "exhaustive", "cascade", "sequential", "spatial", "vocabulary")
@@ -31,30 +27,25 @@ def chosen(matcher, count):
     return "cascade" if count >= FROM_CASCADE else "exhaustive"
 
 
-def check(given):
+def check(given, images):
     """Checks the two options before hours of work. The paths of `given` are absolute, except that
-    of --vocabulary, which becomes absolute."""
+    of --vocabulary, which becomes absolute. `images`: the photographs, Image by name (photographs.py)."""
     if given.matcher == "vocabulary" and not given.vocabulary:
         raise Failure("--matcher vocabulary: needs --vocabulary FILE, a vocabulary tree for COLMAP "
                       "(docs/photographs.md)")
     if given.vocabulary and given.matcher != "vocabulary":
         raise Failure(f"--vocabulary {given.vocabulary}: is only for --matcher vocabulary")
     if given.vocabulary:
-        if not pathlib.Path(given.vocabulary).is_file():
-            raise Failure(f"--vocabulary {given.vocabulary}: file not found")
-        given.vocabulary = str(pathlib.Path(given.vocabulary).resolve())
+        given.vocabulary = files.existing("--vocabulary", given.vocabulary, is_file=True)
     if given.matcher == "spatial":
-        check_positions(given)
+        check_positions(given, images)
 
 
-def check_positions(given):
-    file, images = positions.file_of(given.scale_from), pathlib.Path(given.images)
+def check_positions(given, images):
+    file = positions.file_of(given.scale_from)
     if file is None:
-        with_gps = filter(gps.has_gps, filter(pathlib.Path.is_file, images.rglob("*")))
-        count = len(list(itertools.islice(with_gps, LEAST_POSITIONS)))
-        fail_if_few(count, images)
-        return
-    positions.read(file, positions.names_in(images))
+        return fail_if_few(sum(image.exif.has_position for image in images.values()), given.images)
+    positions.read(file, list(images))
     if not colmap.has_option("spatial_matcher", "SpatialMatching.is_gps"):
         raise Failure("--matcher spatial: this version of COLMAP takes no positions from --scale-from "
                       "positions:FILE (COLMAP 3.8 does); choose another --matcher")
@@ -111,7 +102,7 @@ def prepare_positions(database, file):
     in the database if `file` is None. Can be repeated. Prints how many photographs have no
     position; check_positions() tells how the file is read. Does nothing to the database of a newer
     COLMAP, which has its own table for GPS positions."""
-    with contextlib.closing(sqlite3.connect(database)) as connection, connection:
+    with opened(database) as connection:
         columns = {row[1] for row in connection.execute("PRAGMA table_info(images)")}
         if "prior_tx" not in columns:
             return
@@ -125,8 +116,7 @@ def prepare_positions(database, file):
                                     "prior_ty != 0 OR prior_tz != 0").fetchone()
     fail_if_few(count, database, file)
     if count < len(names):
-        print(f"    {len(names) - count} of {len(names)} photographs have no position and are not "
-              "matched", flush=True)
+        tell(f"{len(names) - count} of {len(names)} photographs have no position and are not matched")
 
 
 def write_positions(connection, known):

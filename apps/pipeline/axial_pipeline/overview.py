@@ -2,7 +2,6 @@
 """A small copy of COLMAP's database with the largest features of each photograph, and the pairs of photographs
 that are worth matching with them."""
 
-import array
 import contextlib
 import heapq
 import itertools
@@ -11,6 +10,7 @@ import sqlite3
 
 from . import database, files, positions, similar
 from .failure import Failure
+from .running import tell
 
 FEATURES = 200  # of a photograph
 # Photographs with which each one is matched: the most similar ones, the next ones by name, and the nearest.
@@ -18,18 +18,6 @@ SIMILAR, BY_NAME, NEAREST = 30, 3, 10
 ALL = 45  # photographs, up to which all pairs are as few
 DEGREE = 111000  # m, of latitude
 OF_FEATURES, OF_PAIRS = ("keypoints", "descriptors"), ("matches", "two_view_geometries")
-
-
-def largest(columns, data, count):
-    """The numbers of the `count` features with the largest scales, the largest first. `data`: COLMAP's
-    keypoints, with `columns` numbers each."""
-    numbers = array.array("f")
-    numbers.frombytes(data)
-    if columns == 6:
-        scales = list(map(database.Features.scale, *(numbers[k::6] for k in range(2, 6))))
-    else:
-        scales = numbers[2::columns] if columns > 2 else [0] * (len(numbers) // max(1, columns))
-    return heapq.nsmallest(count, range(len(scales)), key=lambda number: (-scales[number], number))
 
 
 def copy_tables(connection):
@@ -53,7 +41,8 @@ def copy_largest(connection):
             rows, columns, data = row or (0, 0, b"")
             if not rows:
                 continue
-            kept = largest(columns, data, FEATURES) if kept is None else kept
+            if kept is None:
+                kept = database.coarsest(database.scales_in(database.columns_in(data, columns)), FEATURES)
             size = len(data) // rows
             data = b"".join(data[size * number:size * (number + 1)] for number in kept)
             connection.execute(f"UPDATE main.{table} SET rows = ?, data = ? WHERE image_id = ?",
@@ -105,7 +94,7 @@ def known_positions(file, of_positions):
     try:
         known = positions.read(of_positions, list(named.values()), tell=False)
     except Failure as failure:
-        print(f"    pairs are chosen without positions: {failure}", flush=True)
+        tell(f"pairs are chosen without positions: {failure}")
         return {}
     return {image: known[name] for image, name in named.items() if name in known}
 

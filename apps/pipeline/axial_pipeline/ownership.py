@@ -7,54 +7,13 @@ Records of older versions name nothing: their steps made what the same steps mak
 
 import fnmatch
 import os
-import re
 
 from . import files
 from .failure import Failure
+from .step_kinds import KINDS, ORDER, writes_of
 
-TEXTURED = (".glb", ".ply", ".obj", ".mtl", ".gltf", ".bin", "[0-9].png", "[0-9][0-9].png",
-            "[0-9][0-9][0-9].png", "_material_[0-9]_map_Kd.png", "_material_[0-9][0-9]_map_Kd.png",
-            "_material_[0-9][0-9][0-9]_map_Kd.png", "_gltf[0-9].png", "_gltf[0-9][0-9].png",
-            "_gltf[0-9][0-9][0-9].png")
-TILE = ".tile[0-9]*-[0-9]*"
-MAPS = ("dem.tif", "ortho.tif", "views.tif", "sigma.tif", "hillshade.tif", "contours.geojson", "jpg")
-CHANGES = ("difference.tif", "sigma.tif", "significant.tif", "json", "jpg")
-
-# What each step may write or remove in the output folder, with any options, in the order of the
-# steps. A name that is a folder stands for everything in the folder. Steps that remove files name each
-# kind of file, because users put their own beside them, such as scene_map.qgz of QGIS.
-WRITES = {
-    "frames": ["frames", "frames.json"],
-    "masks": ["colmap_masks"],
-    "features": ["features.db", "features.db-*", "still_features.json", "still_features.png",
-                 "weak_features.*", "cameras"],
-    "lens": ["start_lens.txt"],
-    "matches": ["database.db", "database.db-*", "database.db.tmp", "overview.db", "overview.db-*",
-                "overview.db.tmp", "overview_pairs.txt", "overview_pairs.txt.tmp", "match_pairs.txt",
-                "match_pairs.txt.tmp"],
-    "poses": ["colmap"],
-    "refine": ["refined"],
-    "import": ["scene.mvs", "scene.housing.json", "scene.lenses.json", "scene.geo.json", "undistorted"],
-    "densify": ["scene_dense.*", "depth[0-9]*.*", "depth_inputs.json", "depth_maps.lock",
-                "steps/plan.json"],
-    "mesh": ["scene_dense_mesh.*"],
-    "refine-mesh": ["scene_dense_refined.*"],
-    "texture": [f"scene_textured{tile}{end}" for tile in ("", TILE) for end in TEXTURED],
-    "map": [f"scene_map.{kind}" for kind in MAPS],
-    "compare": [f"{name}.{kind}" for name in ("scene.change", "scene_change")  # the last: of older versions
-                for kind in CHANGES],
-    "page": ["page", "run.json", "run.json.tmp"],
-    "evaluate": ["evaluation.json"]}
-ORDER = list(WRITES)
-JOBS = re.compile(r"(plan|depth)(?:-|$)|(\w+)-tile-")  # records of the jobs of --cluster
 REPORT, REPORT_BEGINS = "report.md", b"# Reconstruction\n"
 MOST_NAMED = 10
-
-
-def step_of(name):
-    """The step of which a record of this name tells a part or the whole."""
-    job = JOBS.match(name)
-    return name if not job else "densify" if job[1] else job[2]
 
 
 def own_files(name):
@@ -69,7 +28,7 @@ def is_record(record):
 
 def made_by(name, record):
     """What an earlier run made in the step or job `name`, which has this record."""
-    makes = record.get("makes", WRITES.get(step_of(name), []))
+    makes = record.get("makes", writes_of(name))
     texts = [text for text in makes if isinstance(text, str)] if isinstance(makes, list) else []
     return [*texts, *own_files(name)]
 
@@ -126,14 +85,8 @@ def other_files(out):
             *([REPORT] if os.path.lexists(out / REPORT) and not is_report(out / REPORT) else [])]
 
 
-def in_words(names):
-    shown = ", ".join(names[:MOST_NAMED])
-    more = len(names) - MOST_NAMED
-    return f"{shown} and {more} more" if more > 0 else shown
-
-
 # What --cluster writes besides. With depth maps and tiles, the names hold any numbers.
-OF_CLUSTER = ["steps/options.json*", *(file for name in ("plan", "depth-*", "densify-tile-*", "mesh-tile-*")
+OF_CLUSTER = ["steps/options.json*", *(file for kind in KINDS.values() for name in kind.parts
                                        for file in own_files(name))]
 
 
@@ -143,7 +96,7 @@ def check(out, steps, is_cluster=False):
     if os.path.lexists(out) and not out.is_dir():
         raise Failure(f"--output {out}: is not a folder")
     known = owned(out)
-    written = [pattern for name in steps for pattern in (*WRITES[name], *own_files(name))]
+    written = [pattern for name in steps for pattern in (*writes_of(name), *own_files(name))]
     written += OF_CLUSTER if is_cluster else []
     foreign = {name for pattern in written for name in existing(out, pattern)
                if not any(fnmatch.fnmatchcase(name, one) for one in known)}
@@ -156,12 +109,12 @@ def left_over(out, steps):
     records = out / "steps"
     stale = [name for name in ORDER if name not in steps and not (records / f"{name}.done.json").exists()
              and (records / f"{name}.begun.json").exists()]
-    return [one for name in stale for pattern in WRITES[name] for one in existing(out, pattern)]
+    return [one for name in stale for pattern in writes_of(name) for one in existing(out, pattern)]
 
 
 def refuse(out, names):
     """Fails if there are `names`, which are files of somebody else in the folder `out`."""
     if names:
-        raise Failure(f"--output {out}: {in_words(names)}: no record of an earlier run names "
+        raise Failure(f"--output {out}: {files.few(names, MOST_NAMED)}: no record of an earlier run names "
                       f"{'this file' if len(names) == 1 else 'these files'}, which this run would "
                       f"replace; move {'it' if len(names) == 1 else 'them'}, or give another --output")

@@ -16,9 +16,9 @@ import struct
 
 from . import exif as exif_data
 from .failure import Failure
+from .files import few
 
 LEAST = 2
-MOST_NAMED = 3
 # Beginnings of other images that COLMAP reads. Their sizes are not read here.
 OTHER_IMAGES = (b"BM", b"GIF8", b"8BPS", b"\0\0\0\x0cjP  ", b"\xff\x4f\xff\x51")
 SEARCHED_END = 1 << 20  # bytes: some programs add data after the end of the image
@@ -133,11 +133,6 @@ def found_in(folder):
             else:
                 found.others.append(relative)
     return found
-
-
-def few(names):
-    shown = ", ".join(names[:MOST_NAMED])
-    return shown if len(names) <= MOST_NAMED else f"{shown} and {len(names) - MOST_NAMED} more"
 
 
 def names_of_masks(name):

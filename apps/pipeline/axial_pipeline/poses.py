@@ -5,8 +5,8 @@ import json
 import struct
 
 from . import colmap, database, files, lenses
-from .photographs import few
-from .running import logged
+from .files import few
+from .running import logged, tell
 
 RECORD = "registered.json"
 FREE = "free_lens"          # folder of the models with a lens that COLMAP calibrated
@@ -32,8 +32,8 @@ def has_sane_lens(model, file):
     begun = starts(file)
     for camera, focal in focal_lengths(model).items():
         if camera in begun and not FOCAL[0] * begun[camera] <= focal <= FOCAL[1] * begun[camera]:
-            print(f"    a model of {colmap.registered(model)} photographs is refused: its focal length ran from "
-                  f"{begun[camera]:.0f} to {focal:.0f} px", flush=True)
+            tell(f"a model of {colmap.registered(model)} photographs is refused: its focal length ran from "
+                 f"{begun[camera]:.0f} to {focal:.0f} px")
             return False
     return True
 
@@ -42,17 +42,6 @@ def scale_names(given):
     """The photographs that --scale-from images: may name."""
     kind, _, words = given.scale_from.partition(":")
     return set(words.replace('"', "").split(",")) if kind == "images" else set()
-
-
-def best_first(folders, given):
-    """The models in the folders of one or two runs of the mapper, each with its number of photographs: first
-    the one with the most photographs, of two with equally many the one that has the photographs of
-    --scale-from."""
-    wanted = scale_names(given)
-    found = [(colmap.registered(model), len(wanted & colmap.names_in(model)), -number, model)
-             for number, folder in enumerate(folders) if folder.is_dir()
-             for model in sorted(folder.iterdir()) if colmap.is_model(model)]
-    return [(model, count) for count, _, _, model in sorted(found, key=lambda one: one[:3], reverse=True)]
 
 
 def try_free_lens(file, given, models, options, log):
@@ -71,24 +60,25 @@ def take_best(file, given, out, options):
     names, models = database.names(file), out / "colmap"
     photographs = sorted(names.values()) if names else []
     before = {name: LEFT_OUT.format(reason) for name, reason in database.left_out(file).items()}
-    first = best_first([models], given)
+    first = colmap.best_first([models], scale_names(given))
     if not given.lens_model and (not first or first[0][1] < len(photographs)):
         count = f"{first[0][1]} of {len(photographs)} photographs have" if first else "no photograph has"
-        print(f"    {count} poses with the lens behind the port; COLMAP tries to calibrate a lens", flush=True)
+        tell(f"{count} poses with the lens behind the port; COLMAP tries to calibrate a lens")
         try_free_lens(file, given, models, options, out / "logs" / "poses-free.log")
-    found = best_first([models, models / FREE], given)
+    found = colmap.best_first([models, models / FREE], scale_names(given))
     if not found:
         raise colmap.no_poses(out / "logs" / "poses.log")
     best, count = found[0]
-    left_out = reasons(file, colmap.names_in(best), [(model, n) for model, n in found[1:]
+    left_out = reasons(file, colmap.images_in(best), [(model, n) for model, n in found[1:]
                                                      if model.parent == best.parent])
     left_out |= before
     record = {"photographs": (len(photographs) or count) + len(before), "registered": count, "left_out": left_out}
-    print_lines(lines_of(record))
+    for line in lines_of(record):
+        tell(line)
     others = [str(n) for model, n in found[1:] if model.parent == best.parent]
     if others:
-        print(f"    COLMAP could not join all images: {len(others)} more models, of {', '.join(others)} images, "
-              f"remain in {best.parent}", flush=True)
+        tell(f"COLMAP could not join all images: {len(others)} more models, of {', '.join(others)} images, "
+              f"remain in {best.parent}")
     best.rename(models / "best")
     files.write(models / RECORD, json.dumps(record))
 
@@ -102,7 +92,7 @@ def reasons(file, registered, others):
     for name, one in found.items():
         if name in registered:
             continue
-        model = next((n for model, n in others if name in colmap.names_in(model)), 0)
+        model = next((n for model, n in others if name in colmap.images_in(model)), 0)
         why[name] = (f"in another model, of {model} photographs" if model
                      else f"{one.count} features" if one.count < FEW_FEATURES
                      else f"at most {matches[name]} matches with another photograph" if matches[name] < FEW_MATCHES
@@ -132,11 +122,6 @@ def lines_of(record):
         yield f"no pose: {few(names)}: {reason}"
 
 
-def print_lines(lines):
-    for line in lines:
-        print(f"    {line}", flush=True)
-
-
 def lines_about(out):
     """lines_of() the refined model in the folder `out`, for the report. None without a record."""
     record = files.read_object(out / "colmap" / RECORD)
@@ -146,4 +131,5 @@ def lines_about(out):
 def print_changes(out):
     """Prints lines_about(), if RefinePoses gave poses to photographs that COLMAP left out."""
     if files.read_object(out / "refined" / "report.json").get("registered", {}).get("photographs"):
-        print_lines(lines_about(out))
+        for line in lines_about(out):
+            tell(line)

@@ -6,7 +6,7 @@ import math
 import pathlib
 import posixpath
 
-from . import photographs, position_rows
+from . import position_rows
 from .failure import Failure
 
 PREFIX = "positions:"
@@ -96,17 +96,11 @@ def read(file, names, tell=True):
     return position_rows.in_metres(known, layout, file, tell)
 
 
-def names_in(images):
-    """The names of the photographs below a folder, as COLMAP names them. Other files beside them, such
-    as 1.xmp beside 1.jpg, must not make the label 1 ambiguous."""
-    return list(photographs.found_in(images).images)
-
-
-def check(file, images):
-    """Fails if the file names fewer than three photographs of the folder `images`. Prints how many
+def check(file, images, names):
+    """Fails if the file names fewer than three of the photographs `names` of the folder `images`. Prints how many
     names are no photographs: RefinePoses would skip a misspelt name like that of a photograph
     without a pose."""
-    found, _ = found_in(file, names_in(images))
+    found, _ = found_in(file, names)
     missing = [label for _, label, _, image in found if image is None]
     if len(found) - len(missing) < LEAST_NAMES:
         raise Failure(f"{file}: {len(found) - len(missing)} of its names are photographs in "

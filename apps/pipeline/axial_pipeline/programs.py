@@ -1,11 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The commands of AxialMVS's programs, as lists of words. Nothing is run here."""
+"""The commands of AxialMVS's programs, as lists of words, and the versions of programs."""
 
 import pathlib
 import shlex
 
 from .failure import Failure
+from .running import answer_of
 
+NAMES = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh", "TextureMesh",
+         "MapSurface", "CompareSurveys", "ViewScene")  # of the programs that every run may need
+# How a program is asked for its version, which is the first line that it prints.
+QUESTIONS = {"colmap": "help", **dict.fromkeys((*NAMES, "EvaluateReconstruction"), "--version")}
+MOST_SECONDS = 20
 PACKAGE = pathlib.Path(__file__).resolve().parent
 
 
@@ -24,6 +30,24 @@ def words_of(name, given):
         return shlex.split(value)
     except ValueError as error:
         raise Failure(f"--{name} {value}: {error}") from None
+
+
+def require(folder, names):
+    """Fails if one of the programs is not in the `folder` of --programs."""
+    for name in names:
+        if not (pathlib.Path(folder) / name).is_file():
+            raise Failure(f"--programs {folder}: {name} not found; build the programs first")
+
+
+def version_of(command):
+    """The line by which the program of `command` states its version; None if it states none."""
+    program = str(command[0])
+    question = QUESTIONS.get(pathlib.Path(program).name)
+    if question is None:
+        return None
+    said = answer_of([program, question], MOST_SECONDS)
+    lines = said.stdout.strip().splitlines()
+    return lines[0].strip() if said.returncode == 0 and lines else None
 
 
 class Programs:

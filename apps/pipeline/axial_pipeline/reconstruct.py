@@ -22,6 +22,7 @@ from . import cluster, files, ownership, poses, still_features, video
 from .failure import Failure, run_main
 from .reconstruct_options import check_options, check_photographs, options, wanted_steps
 from .reconstruct_steps import best_mesh, steps
+from .step_kinds import ORDER
 from .steps import run_all
 
 
@@ -116,7 +117,7 @@ def make_frames(given, out):
     ownership.check(out, [step.name])
     out.mkdir(parents=True, exist_ok=True)
     with only_run_in(out):
-        run_all([step], out, ownership.ORDER)
+        run_all([step], out, ORDER)
 
 
 def say_found(found):
@@ -142,13 +143,13 @@ def reconstruct(given):
     out.mkdir(parents=True, exist_ok=True)
     with only_run_in(out) as lock:
         seconds = (cluster.run_all(todo, given, out, lock) if given.cluster
-                   else run_all(todo, out, ownership.ORDER))
+                   else run_all(todo, out, ORDER))
         files.write(out / "report.md", report(out, seconds, given.lines))
     for line in still_features.lines_about(out):
         print(f"warning: {line}")
     left_over = ownership.left_over(out, [step.name for step in todo])
     if left_over:
-        print(f"Of an earlier run, not of this one: {ownership.in_words(left_over)}")
+        print(f"Of an earlier run, not of this one: {files.few(left_over, ownership.MOST_NAMED)}")
     print(results_of(given, out))
 
 

@@ -7,20 +7,14 @@ import itertools
 import os
 import pathlib
 
-from . import (cameras, cluster, colmap, database, doubles, estimates, files, first_checks, first_look, lenses,
+from . import (cameras, cluster, colmap, doubles, estimates, files, first_checks, first_look, lenses,
                masks, matching, photographs, poses, positions, video)
 from .failure import Failure
 from .option_files import find_option, has_option
-from .ownership import ORDER, WRITES, is_record
-from .programs import Programs, default_folder, words_of
+from .ownership import is_record
+from .programs import NAMES, Programs, default_folder, require, words_of
+from .step_kinds import KINDS, OPTIONS, ORDER
 
-PROGRAMS = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh",
-            "TextureMesh", "MapSurface", "CompareSurveys", "ViewScene")
-# Options whose values are options for a program, and this program.
-MORE_OPTIONS = {"frames": "ExtractFrames", "features": "COLMAP's feature_extractor", "matches": "COLMAP's matcher",
-                "poses": "COLMAP's mapper", "refine-poses": "RefinePoses", "densify": "DensifyPointCloud",
-                "mesh": "ReconstructMesh", "refine-mesh": "RefineMesh", "texture": "TextureMesh",
-                "map": "MapSurface", "compare": "CompareSurveys", "page": "ViewScene"}
 RESULTS = ("poses", "cloud", "mesh", "texture", "map", "page")
 SKIPPED = ("refine-mesh", "texture", "map", "page")  # steps that may be left out
 MOST_TILES = 1000  # as in the programs
@@ -30,7 +24,8 @@ def options(script_folder, description):
     programs = os.environ.get("AXIAL_BIN", str(default_folder(script_folder)))
     parser = argparse.ArgumentParser(description=description)
     source = parser.add_mutually_exclusive_group()
-    source.add_argument("--images", default="", help="folder of the raw underwater photographs; this option or --video is required")
+    source.add_argument("--images", default="", help="folder of the raw underwater photographs; this option or "
+                        "--video is required")
     source.add_argument("--video", action="append", default=[], dest="videos", metavar="CLIP",
                         help="in place of --images: a video, of which sharp frames with enough motion between them "
                         "become the photographs; may be given several times (docs/photographs.md)")
@@ -53,14 +48,14 @@ def options(script_folder, description):
                         f"{matching.FROM_CASCADE} images, otherwise cascade (default: %(default)s)")
     parser.add_argument("--vocabulary", default="",
                         help="vocabulary tree for COLMAP, for --matcher vocabulary")
-    parser.add_argument("--lens-model", default="", choices=("", *database.LENS_MODELS), metavar="MODEL",
+    parser.add_argument("--lens-model", default="", choices=("", *lenses.MODELS), metavar="MODEL",
                         help="lens model that COLMAP calibrates, so that it absorbs the refraction (default: COLMAP "
                         "keeps the lens that lens and port give; if photographs have no pose then, it calibrates "
                         "this lens)")
     parser.add_argument("--check", action="store_true", help="check all inputs, look at the photographs, print "
                         "what was found and how much time, memory and disk space the run needs, and end")
     parser.add_argument("--keep-all", action="store_true", help="use blurred, dark and doubled photographs, too")
-    for name, program in MORE_OPTIONS.items():
+    for name, program in OPTIONS.items():
         parser.add_argument(f"--{name}", default="",
                             help=f"more options for {program}, in one word" +
                             (": --refine-poses='--scale-sigma 0.1'" if name == "refine-poses" else ""))
@@ -113,11 +108,6 @@ def check_tiles(given):
                 raise Failure(f"--{name}: {option} contradicts --tiles {given.tiles}")
 
 
-# The first result of --until for which the steps run.
-NEEDED_FOR = {"densify": "cloud", "mesh": "mesh", "refine-mesh": "mesh", "texture": "texture", "map": "map",
-              "compare": "mesh", "page": "page"}
-
-
 def skipped(given):
     """The steps of --without."""
     names = given.without.split(",") if given.without else []
@@ -131,21 +121,20 @@ def skipped(given):
 def wanted_steps(given):
     """The names of the steps after the poses that run."""
     last, left_out = RESULTS.index(given.until), skipped(given)
-    return [name for name, result in NEEDED_FOR.items()
-            if RESULTS.index(result) <= last and name not in left_out
+    return [name for name, kind in KINDS.items()
+            if kind.result and RESULTS.index(kind.result) <= last and name not in left_out
             and (name != "compare" or given.earlier)]
 
 
 def check_results(given):
     """Refuses options of programs that do not run."""
     left_out = skipped(given)
-    for name, result in NEEDED_FOR.items():
-        value = getattr(given, name.replace("-", "_"))
+    for name in (name for name in KINDS if name in OPTIONS):
+        value, result = getattr(given, name.replace("-", "_")), KINDS[name].result
         if value and name in left_out:
             raise Failure(f"--{name} {value}: contradicts --without {given.without}")
-        if value and RESULTS.index(given.until) < RESULTS.index(result):
-            raise Failure(f"--{name} {value}: {MORE_OPTIONS[name]} does not run with --until "
-                          f"{given.until}")
+        if value and result and RESULTS.index(given.until) < RESULTS.index(result):
+            raise Failure(f"--{name} {value}: {OPTIONS[name]} does not run with --until {given.until}")
     if given.compare and not given.earlier:
         raise Failure(f"--compare {given.compare}: is only for --earlier")
     if given.earlier and given.until in ("poses", "cloud"):
@@ -218,18 +207,16 @@ def mesh_of_earlier_survey(path):
 def is_own_mesh(mesh, out):
     """Whether a run in the folder `out` may write or remove the file `mesh`."""
     return mesh.parent == out and any(fnmatch.fnmatchcase(mesh.name, pattern)
-                                      for patterns in WRITES.values() for pattern in patterns)
+                                      for kind in KINDS.values() for pattern in kind.writes)
 
 
 def check_lens_files(given):
     """Makes the paths in --lens absolute. `given.lens` is the first file."""
     for number, text in enumerate(given.lenses):
         focal, file = lenses.given_as(text)
-        if not pathlib.Path(file).exists():
-            raise Failure(f"--lens {text}: not found")
-        path = files.resolved("--lens", file)
-        given.lenses[number] = str(path) if focal is None else f"{focal:g}mm:{path}"
-        given.lens = given.lens if number else str(path)
+        path = files.existing("--lens", text, file)
+        given.lenses[number] = path if focal is None else f"{focal:g}mm:{path}"
+        given.lens = given.lens if number else path
 
 
 def check_paths(given):
@@ -240,28 +227,20 @@ def check_paths(given):
     check_lens_files(given)
     for name in ("images", "housing", "truth", "earlier", "programs"):
         path = getattr(given, name)
-        if name == "housing" and path in first_checks.KINDS:
-            continue
-        if path and not pathlib.Path(path).exists():
-            raise Failure(f"--{name} {path}: not found")
-        if path:
-            setattr(given, name, str(files.resolved(f"--{name}", path)))
+        if path and not (name == "housing" and path in first_checks.KINDS):
+            setattr(given, name, files.existing(f"--{name}", path))
     masks.check(given)
     file = positions.file_of(given.scale_from)
     if file is not None:
-        if not pathlib.Path(file).is_file():
-            raise Failure(f"--scale-from {given.scale_from}: file not found")
-        given.scale_from = positions.PREFIX + str(pathlib.Path(file).resolve())
+        given.scale_from = positions.PREFIX + files.existing("--scale-from", given.scale_from, file, is_file=True)
 
 
 def check_options(given):
     """Checks everything that can be known without the photographs, and makes all paths absolute. Returns lines
     about the lens behind the port."""
     check_paths(given)
-    for program in PROGRAMS:
-        if not (pathlib.Path(given.programs) / program).is_file():
-            raise Failure(f"--programs {given.programs}: {program} not found; build the programs first")
-    for name in (*MORE_OPTIONS, "snakemake"):
+    require(given.programs, NAMES)
+    for name in (*OPTIONS, "snakemake"):
         words_of(name, given)
     check_mask_labels(given)
     if not 1 <= given.tiles <= MOST_TILES:
@@ -280,7 +259,7 @@ def check_options(given):
     colmap.check_installed()
     first_checks.check_refine(given)
     lens_lines = first_checks.check_lens_and_housing(given)
-    first_checks.check_options_of_programs(given, {name: program for name, program in MORE_OPTIONS.items()
+    first_checks.check_options_of_programs(given, {name: program for name, program in OPTIONS.items()
                                                    if name != "matches"})
     return lens_lines
 
@@ -288,10 +267,9 @@ def check_options(given):
 def check_photographs(given, lens_lines):
     """Checks everything else that can be known before hours of work. `lens_lines`: of check_options(). Returns
     what was found, for --check: pairs of a word and a text."""
-    file = positions.file_of(given.scale_from)
+    images, file = photographs.check(given.images, one_size=False), positions.file_of(given.scale_from)
     if file is not None:
-        positions.check(pathlib.Path(file), pathlib.Path(given.images))
-    images = photographs.check(given.images, one_size=False)
+        positions.check(file, given.images, list(images))
     given.cameras, left_out = cameras.of(given, images)
     given.lines = [*cameras.lines_about(given.cameras), *left_out]
     for line in given.lines:
@@ -299,8 +277,8 @@ def check_photographs(given, lens_lines):
     given.lines += video.lines_about(pathlib.Path(given.output)) if given.videos else []
     given.doubled = doubled(given, images)
     given.matcher = matching.chosen(given.matcher, len(used(given, images)))
-    first_checks.check_options_of_programs(given, {"matches": MORE_OPTIONS["matches"]})
-    matching.check(given)
+    first_checks.check_options_of_programs(given, {"matches": OPTIONS["matches"]})
+    matching.check(given, images)
     if pathlib.Path(given.output).is_relative_to(given.images):
         raise Failure(f"--output {given.output}: lies in the folder of the images")
     if given.cluster:
@@ -320,7 +298,7 @@ def doubled(given, images):
     if found:
         pairs = [f"{name} is {twin}" for name, twin in found.items()]
         print(f"{given.images}: {len(found)} photographs are copies of others, and are left out (--keep-all keeps "
-              f"them): {photographs.few(pairs)}", flush=True)
+              f"them): {files.few(pairs)}", flush=True)
     return found
 
 

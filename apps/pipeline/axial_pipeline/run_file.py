@@ -7,11 +7,9 @@ import json
 import re
 
 from . import files, jobs
-from .steps import Records, chain_to, digest, read_record
+from .steps import Records
 
 FOUND = ("lenses", "cameras", "lines", "videos")  # what the first checks add to the options
-# The jobs of which `reconstruct --cluster` makes a step.
-PARTS = {"densify": ("plan", "depth-*", "densify-tile-*"), "mesh": ("mesh-tile-*",)}
 
 WARNINGS = re.compile(
     r"^\d\d:\d\d:\d\d \[\w+\] warning: (?P<ours>.*)$"  # libs/base/log.cpp
@@ -29,24 +27,10 @@ def warnings_of(logs):
     return [{"text": text, "times": times} for text, times in counts.items()]
 
 
-def parts_of(name, chain, out):
-    """The records of the jobs that made parts of the step `name` with this chain, by their names."""
-    found = {}
-    for pattern in PARTS.get(name, ()):
-        for path in sorted(out.glob(jobs.done(pattern))):
-            record = read_record(path)
-            if record.get("chain") == digest(chain):
-                found[path.name.removesuffix(".done.json")] = record
-    return found
-
-
 def entry_of(step, todo, out):
-    record = Records(out / "steps").read(step, "done")
-    parts = parts_of(step.name, chain_to(step.name, todo), out)
-    logs = [out / "logs" / f"{name}.log" for name in (*parts, step.name)]
-    seconds = sum(one.get("seconds", 0) for one in (record, *parts.values()))
-    return {"name": step.name, "command": step.command, "seconds": round(seconds, 1),
-            "version": record.get("version"), "warnings": warnings_of(logs)}
+    logs = [out / "logs" / f"{name}.log" for name in (*jobs.parts_of(step.name, todo, out), step.name)]
+    return {"name": step.name, "command": step.command, "seconds": jobs.seconds_of(step, todo, out),
+            "version": Records(out / "steps").read(step, "done").get("version"), "warnings": warnings_of(logs)}
 
 
 def write_run(path, given, todo, out):

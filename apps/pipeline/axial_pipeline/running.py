@@ -6,6 +6,7 @@ import contextlib
 import ctypes
 import os
 import pathlib
+import shlex
 import signal
 import subprocess
 import sys
@@ -15,6 +16,7 @@ from .failure import Failure
 
 LIBC = ctypes.CDLL(None)
 PR_SET_PDEATHSIG = 1  # of <sys/prctl.h>
+MOST_SECONDS = 120  # of a short command
 LINES_SHOWN = 20  # of the log of a command that failed
 
 
@@ -83,8 +85,31 @@ def ending(code):
     return f"signal {code - 128}" if is_signal else f"exit code {code}"
 
 
+def answer_of(command, seconds=MOST_SECONDS):
+    """A short command that has ended, with its output as text. The exit code is 127, and standard error says why, if
+    the command cannot be started or takes longer."""
+    words = [str(word) for word in command]
+    try:
+        return subprocess.run(words, capture_output=True, text=True, errors="replace", stdin=subprocess.DEVNULL,
+                              timeout=seconds)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return subprocess.CompletedProcess(words, 127, "", str(error))
+
+
+def tell(line):
+    """Prints a line about the step that runs."""
+    print(f"    {line}", flush=True)
+
+
 def name_of(command):
     return pathlib.Path(str(command[0])).name
+
+
+def told(command):
+    """The words of a command, which are printed."""
+    words = [str(word) for word in command]
+    tell(shlex.join(words))
+    return words
 
 
 def logged(command, log, name=None, excuse=None):

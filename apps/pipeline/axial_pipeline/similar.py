@@ -13,11 +13,12 @@ import array
 import collections
 import random
 
+from .database import DESCRIPTOR
+
 TABLES, BITS = 8, 20
 SUMS = 32             # of a descriptor
 MOST_SHARE = 0.2      # of the photographs; a word in more of them tells nothing
 MOST_PHOTOGRAPHS = 50  # the same for many photographs
-LENGTH = 128          # bytes of a descriptor: 4 x 4 cells of 8 directions
 
 
 def sums_of(descriptor):
@@ -37,10 +38,10 @@ def comparisons():
 
 
 def words_of(descriptors, compared):
-    """The words of the features of a photograph, by table. `descriptors`: bytes, LENGTH for each feature."""
+    """The words of the features of a photograph, by table. `descriptors`: bytes, DESCRIPTOR for each feature."""
     words = [array.array("I") for _ in compared]
-    for begin in range(0, len(descriptors), LENGTH):
-        sums = sums_of(descriptors[begin:begin + LENGTH])
+    for begin in range(0, len(descriptors), DESCRIPTOR):
+        sums = sums_of(descriptors[begin:begin + DESCRIPTOR])
         for table, pairs in zip(words, compared):
             word = 0
             for first, second in pairs:

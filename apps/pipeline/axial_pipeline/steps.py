@@ -11,8 +11,9 @@ import shlex
 import time
 
 from . import files
+from .programs import version_of
 from .running import logged
-from .versions import version_of
+from .step_kinds import writes_of
 
 
 class Step:
@@ -22,13 +23,12 @@ class Step:
     `anew`: paths that are removed before the command starts, because the command would add to them.
     `changed`: paths that are removed only if an earlier step or an input changed, because otherwise
     the command continues with them. `before`, `after`: functions, called before the command and
-    after its success. `writes`: what the record says that the step may write or remove, as in
-    ownership.WRITES. `excuse`: a text by which the command says that it found nothing, after which
+    after its success. `excuse`: a text by which the command says that it found nothing, after which
     the step goes on. `settings`: words that say what `before` and `after` do, where neither the command
     nor a file that the step reads says it."""
 
     def __init__(self, name, command, makes, reads=(), anew=(), changed=(), before=lambda: None,
-                 after=lambda: None, writes=(), excuse=None, settings=()):
+                 after=lambda: None, excuse=None, settings=()):
         self.name = name
         self.command = [str(word) for word in command]
         self.makes = makes
@@ -37,7 +37,7 @@ class Step:
         self.changed = changed
         self.before = before
         self.after = after
-        self.writes = list(writes)
+        self.writes = writes_of(name)
         self.excuse = excuse
         self.settings = list(settings)
 
@@ -100,12 +100,12 @@ class Records:
 
     def __init__(self, folder):
         self.folder = folder
-        folder.mkdir(parents=True, exist_ok=True)
 
     def read(self, step, state):
         return read_record(self.folder / f"{step.name}.{state}.json")
 
     def write(self, step, state, record):
+        self.folder.mkdir(parents=True, exist_ok=True)
         files.write(self.folder / f"{step.name}.{state}.json", json.dumps(record))
 
     def forget(self, names):
@@ -114,14 +114,17 @@ class Records:
             files.clear(self.folder / f"{name}.done.json")
 
 
-def chain_to(name, todo):
-    """The commands and inputs of all steps of `todo` up to the one with this name."""
+def with_chains(todo):
+    """The steps of `todo`, each with the commands and inputs of all steps up to it."""
     chain = []
     for step in todo:
-        chain += [step.command, step.fingerprint()]
-        if step.name == name:
-            break
-    return chain
+        chain = [*chain, step.command, step.fingerprint()]
+        yield step, chain
+
+
+def chain_to(name, todo):
+    """The chain of the step of `todo` with this name."""
+    return next(chain for step, chain in with_chains(todo) if step.name == name)
 
 
 def is_done(step, chain, records):
@@ -158,9 +161,8 @@ def names_from(number, todo, order):
 def run_all(todo, out, order=()):
     """Runs the steps that are not done, with records in `out`/steps and logs in `out`/logs. Returns
     the time of every step in seconds, by the step's name. `order`: as for names_from()."""
-    records, chain, seconds = Records(out / "steps"), [], {}
-    for number, step in enumerate(todo):
-        chain = [*chain, step.command, step.fingerprint()]
+    records, seconds = Records(out / "steps"), {}
+    for number, (step, chain) in enumerate(with_chains(todo)):
         headline = f"[{number + 1}/{len(todo)}] {step.name}"
         if is_done(step, chain, records):
             seconds[step.name] = records.read(step, "done")["seconds"]

@@ -9,20 +9,18 @@ photographs fountain-P11: no feature has the same pixel within LARGEST_MOVE and 
 LEAST_COSINE in 20 % of the photographs, as many as in photographs that were moved against each other
 (chance). At a cosine of 0.8, 1 in 200 features has them in 20 %, and none in 50 %."""
 
-import array
 import collections
 import contextlib
-import dataclasses
 import json
 import math
 import operator
 import pathlib
-import sqlite3
 import struct
 import time
 import zlib
 
 from . import files
+from .database import DAMAGE, by_camera, keypoints_of, opened
 
 FOUND, MASK = "still_features.json", "still_features.png"  # below the output folder
 SAMPLE, REFERENCES = 16, 4  # photographs that are compared, and those that all are compared with
@@ -34,32 +32,6 @@ LEAST_SHARE = 0.5  # of the other photographs
 LEAST_FEATURES = 8  # fewer change no pose
 NEAR = 0.05  # part of the width: the size of cells, and features in cells that touch are one region
 MARGIN, OF_SCALE = 0.01, 6  # around a feature: part of the width, and size of its descriptor
-
-
-@dataclasses.dataclass
-class Features:
-    """The features of a photograph."""
-    xs: array.array  # [px], pixel centres at 0.5
-    ys: array.array
-    scales: list
-    descriptors: bytes  # 128 each
-
-    def descriptor(self, number):
-        return self.descriptors[128 * number:128 * number + 128]
-
-
-def features_of(rows, columns, keypoints, descriptors):
-    """The Features in a row of COLMAP's tables, which may have more numbers for each feature than its
-    place: scale and orientation, or an affine shape."""
-    numbers = array.array("f")
-    numbers.frombytes(keypoints)
-    column = [numbers[k::columns] for k in range(columns)]
-    scales = [0.0] * rows
-    if columns == 4:
-        scales = list(column[2])
-    if columns == 6:
-        scales = [math.sqrt(abs(a * d - b * c)) for a, b, c, d in zip(*column[2:])]
-    return Features(column[0], column[1], scales, descriptors)
 
 
 def sample_of(items, count):
@@ -78,7 +50,7 @@ def cells_of(features, size):
     that every feature nearer than half a cell is among those of a place's cell."""
     cells = collections.defaultdict(list)
     for number, (x, y) in enumerate(zip(features.xs, features.ys)):
-        column, row = math.floor(x / size), math.floor(y / size)
+        column, row = cell_of(x, y, size)
         columns = (column, column + (1 if x / size - column >= 0.5 else -1))
         rows = (row, row + (1 if y / size - row >= 0.5 else -1))
         for cell in ((a, b) for a in columns for b in rows):
@@ -88,26 +60,35 @@ def cells_of(features, size):
 
 def counts_of_rest(reference, others, largest_move):
     """In how many of the photographs `others` each feature of `reference` is at rest. `others`: their
-    Features and cells_of()."""
+    Keypoints and cells_of()."""
     counts = [0] * len(reference.xs)
     size = 2 * largest_move
     for other, cells in others:
         for number, (x, y) in enumerate(zip(reference.xs, reference.ys)):
-            near = (one for one in cells.get((math.floor(x / size), math.floor(y / size)), ())
+            near = (one for one in cells.get(cell_of(x, y, size), ())
                     if abs(other.xs[one] - x) <= largest_move and abs(other.ys[one] - y) <= largest_move)
             counts[number] += any(cosine(reference.descriptor(number), other.descriptor(one)) >=
                                   LEAST_COSINE for one in near)
     return counts
 
 
+def cell_of(x, y, size):
+    return math.floor(x / size), math.floor(y / size)
+
+
+def around(cell):
+    """The cell and those that touch it."""
+    return [(cell[0] + a, cell[1] + b) for a in (-1, 0, 1) for b in (-1, 0, 1)]
+
+
 def each_once(features, distance):
     """The `features` without those that are nearer than `distance` to an earlier one in x and in y."""
     kept = collections.defaultdict(list)
     for x, y, *rest in features:
-        column, row = math.floor(x / distance), math.floor(y / distance)
-        near = (one for a in (-1, 0, 1) for b in (-1, 0, 1) for one in kept.get((column + a, row + b), ()))
+        cell = cell_of(x, y, distance)
+        near = (one for other in around(cell) for one in kept.get(other, ()))
         if not any(abs(one[0] - x) < distance and abs(one[1] - y) < distance for one in near):
-            kept[column, row].append((x, y, *rest))
+            kept[cell].append((x, y, *rest))
     return [one for cell in kept.values() for one in cell]
 
 
@@ -117,7 +98,7 @@ def move_of(width):
 
 
 def at_rest(photographs, width):
-    """(x, y, scale, share of photographs) of the features at rest. `photographs`: Features."""
+    """(x, y, scale, share of photographs) of the features at rest. `photographs`: Keypoints."""
     largest_move = move_of(width)
     sample = [(one, cells_of(one, 2 * largest_move)) for one in photographs]
     found = []
@@ -135,15 +116,14 @@ def regions_of(features, width):
     """Lists of features that are near each other, the largest first: those in cells that touch."""
     cells, size = collections.defaultdict(list), NEAR * width
     for feature in features:
-        cells[math.floor(feature[0] / size), math.floor(feature[1] / size)].append(feature)
+        cells[cell_of(*feature[:2], size)].append(feature)
     regions = []
     while cells:
         region, todo = [], [next(iter(cells))]
         while todo:
-            column, row = todo.pop()
-            region += cells.pop((column, row), [])
-            todo += [(column + a, row + b) for a in (-1, 0, 1) for b in (-1, 0, 1)
-                     if (column + a, row + b) in cells]
+            cell = todo.pop()
+            region += cells.pop(cell, [])
+            todo += [other for other in around(cell) if other in cells]
         regions.append(region)
     return sorted(regions, key=len, reverse=True)
 
@@ -181,33 +161,15 @@ def mask_of(features, width, height):
     return grey_png(width, rows)
 
 
-def cameras_in(connection):
-    """(width, height) and the numbers of the photographs of each camera with enough photographs."""
-    for camera, width, height in connection.execute("SELECT camera_id, width, height FROM cameras"):
-        images = [number for number, in connection.execute(
-            "SELECT image_id FROM images WHERE camera_id = ? ORDER BY name", (camera,))]
-        if len(images) >= LEAST_PHOTOGRAPHS:
-            yield width, height, images
-
-
-def features_in(connection, image):
-    keypoints = connection.execute("SELECT rows, cols, data FROM keypoints WHERE image_id = ?",
-                                   (image,)).fetchone()
-    descriptors = connection.execute("SELECT data FROM descriptors WHERE image_id = ?",
-                                     (image,)).fetchone()
-    if not keypoints or not descriptors or not keypoints[0]:
-        return Features(array.array("f"), array.array("f"), [], b"")
-    return features_of(*keypoints, *descriptors)
-
-
 def find(database):
     """(width, height, features at rest) of the camera with the most of them. Nothing if there are too
     few, or if `database` is not one of COLMAP or is damaged."""
-    found, damage = [], (sqlite3.Error, LookupError, TypeError, ValueError)
-    with contextlib.suppress(*damage), contextlib.closing(sqlite3.connect(database)) as connection:
-        for width, height, images in cameras_in(connection):
-            sample = [features_in(connection, image) for image in sample_of(images, SAMPLE)]
-            found.append((width, height, at_rest(sample, width)))
+    found = []
+    with contextlib.suppress(*DAMAGE), opened(database) as connection:
+        for size, images in by_camera(connection):
+            if len(images) >= LEAST_PHOTOGRAPHS:
+                sample = [keypoints_of(connection, image) for image, _ in sample_of(images, SAMPLE)]
+                found.append((*size, at_rest(sample, size[0])))
     return max((one for one in found if len(one[2]) >= LEAST_FEATURES),
                key=lambda one: len(one[2]), default=None)
 

@@ -3,8 +3,9 @@
 
 import hashlib
 
-from . import files, lens
+from . import files, lenses
 from .colmap_model import Calibration
+from .failure import Failure
 from .running import shown
 
 
@@ -19,14 +20,23 @@ def make_truth(programs, scene, folder):
     files.write(mark, made_by + "\n")
 
 
+def pinhole_parameters(data):
+    """"fx,fy,cx,cy" of the PINHOLE camera of the scene in the folder `data`."""
+    file = data / "sparse" / "cameras.txt"
+    found = next((lens for lens in lenses.in_file(file) if lens.model == "PINHOLE"), None)
+    if not found:
+        raise Failure(f"{file}: has no PINHOLE camera")
+    return ",".join(map(repr, found.parameters))
+
+
 def true_lens(data):
     """The lens of the scene in the folder `data`, fixed."""
-    return Calibration("PINHOLE", lens.pinhole_parameters(data / "sparse"), refine=False)
+    return Calibration("PINHOLE", pinhole_parameters(data), refine=False)
 
 
 def self_calibrated_lens(data):
     """The lens that COLMAP calibrates under water, without a model of refraction."""
-    parameters = lens.pinhole_parameters(data / "sparse") + ",0,0,0,0"
+    parameters = pinhole_parameters(data) + ",0,0,0,0"
     return Calibration("OPENCV", parameters, refine=True)
 
 

@@ -4,10 +4,9 @@ and port tell if they are not the same after half a turn. RefinePoses runs with 
 
 import json
 import math
-import shlex
 
 from . import cameras, files
-from .running import exit_code_of
+from .running import exit_code_of, tell, told
 
 TURNS = {1: "right", 3: "left"}  # in quarters, clockwise
 CLEAR = 0.002  # relative difference of the RMS errors that tells
@@ -23,8 +22,7 @@ def are_alike(given):
 def error_of(command, folder, log):
     """The RMS error of a run of RefinePoses into `folder` [px]; infinite if it fails."""
     files.clear(folder)
-    print(f"    {shlex.join(map(str, command))}", flush=True)
-    exit_code_of(command, log)
+    exit_code_of(told(command), log)
     error = files.read_object(folder / "report.json").get("rms_after_px")
     files.clear(folder)
     return error if isinstance(error, (int, float)) and math.isfinite(error) else math.inf
@@ -45,5 +43,5 @@ def choose(given, out, command_into):
     cameras.write(given, out, best)
     least, most = errors[best], max(errors.values())
     if math.isfinite(least):
-        print(f"    turned photographs: turned to the {TURNS[best]} (RMS error {least:.4g} px, otherwise {most:.4g} px"
-              f"{'; both fit' if most < (1 + CLEAR) * least else ''})", flush=True)
+        tell(f"turned photographs: turned to the {TURNS[best]} (RMS error {least:.4g} px, otherwise {most:.4g} px"
+             f"{'; both fit' if most < (1 + CLEAR) * least else ''})")

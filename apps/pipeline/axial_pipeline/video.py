@@ -7,15 +7,13 @@ import pathlib
 
 from . import files
 from .failure import Failure
-from .ownership import WRITES
-from .programs import Programs, words_of
+from .programs import Programs, require, words_of
 from .run_file import warnings_of
-from .steps import Report, Step, digest, is_done, read_record
+from .steps import Records, Report, Step, is_done
 
 NAME = "frames"           # of the step
 FOLDER = "frames"         # of the photographs, below the output folder
 LIST = "frames.json"      # numbers, times, sharpness and motion of the frames
-PROGRAM = "ExtractFrames"
 
 
 def check(given):
@@ -27,13 +25,10 @@ def check(given):
         raise Failure("--images is missing: the folder of the photographs; or give --video")
     if not given.videos:
         return
-    if not (pathlib.Path(given.programs) / PROGRAM).is_file():
-        raise Failure(f"--programs {given.programs}: {PROGRAM} not found; build the programs first")
+    require(given.programs, ["ExtractFrames"])
     folder = pathlib.Path(given.output) / FOLDER
     for number, clip in enumerate(given.videos):
-        path = files.resolved("--video", clip)
-        if not path.exists():
-            raise Failure(f"--video {clip}: not found")
+        path = pathlib.Path(files.existing("--video", clip))
         if not path.is_file():
             raise Failure(f"--video {clip}: is not a file")
         if path.is_relative_to(folder):
@@ -46,23 +41,13 @@ def step(given, out):
     clips = [pathlib.Path(clip) for clip in given.videos]
     return Step(NAME, Programs(given.programs).extract_frames(clips, out / FOLDER, out / LIST,
                                                               *words_of("frames", given)),
-                makes=Report(out / LIST), reads=clips, anew=[out / FOLDER, out / LIST], writes=WRITES[NAME])
-
-
-class Made:
-    """Records that are read only: the folder of the records is not created."""
-
-    def __init__(self, out):
-        self.folder = out / "steps"
-
-    def read(self, one, state):
-        return read_record(self.folder / f"{one.name}.{state}.json")
+                makes=Report(out / LIST), reads=clips, anew=[out / FOLDER, out / LIST])
 
 
 def are_there(given, out):
     """Whether a run has made the frames of these clips before."""
     one = step(given, out)
-    return is_done(one, [one.command, one.fingerprint()], Made(out))
+    return is_done(one, [one.command, one.fingerprint()], Records(out / "steps"))
 
 
 def rows(given):
