@@ -5,8 +5,6 @@ import functools
 import json
 import shutil
 
-from axial_pipeline import truth as pipeline_truth
-from axial_pipeline.colmap_model import colmap_model
 from support import runs
 from support.runs import PROGRAMS, ROOT, measured
 
@@ -26,9 +24,8 @@ def point_of_each_scene(wanted):
     """Registers the function, which gets a folder and a scene, as one point for each scene."""
     def register(function):
         for scene in ("closeup", "reef"):
-            text = wanted[scene] if isinstance(wanted, dict) else wanted
             name = f"{scene}-{function.__name__.replace('_', '-')}"
-            POINTS[name] = (functools.partial(function, scene=scene), text)
+            POINTS[name] = (functools.partial(function, scene=scene), wanted)
         return function
     return register
 
@@ -56,7 +53,7 @@ def densified(folder, model, images, housing, *options):
     return kept(folder / "cost.json", run)
 
 
-def meshed(folder, truth, medium, level, *options):
+def meshed(folder, truth, medium, level):
     """densified() on true poses, and ReconstructMesh. Returns the options of a port, and the folder's
     scene and mesh. If `folder` holds a mesh already, nothing is run."""
     housing = truth.housing(medium)
@@ -64,23 +61,8 @@ def meshed(folder, truth, medium, level, *options):
     densified(folder, truth.data / "sparse", truth.data / medium, housing, "--resolution-level", level)
     scene, mesh = folder / "scene_dense.mvs", folder / "mesh.ply"
     if not mesh.exists():
-        measured(folder / "mesh.log", *PROGRAMS.reconstruct_mesh(scene, mesh, *refractive, *options))
+        measured(folder / "mesh.log", *PROGRAMS.reconstruct_mesh(scene, mesh, *refractive))
     return refractive, scene, mesh
-
-
-def poses(scene, medium, number):
-    """The folder of COLMAP's poses of a run, aligned to the truth in metres. A run does not depend
-    on this source and is never repeated."""
-    data, work = truth_of(scene).data, BASE / "colmap" / f"{scene}-{medium}-{number}"
-    lens = pipeline_truth.true_lens if medium == "air" else pipeline_truth.self_calibrated_lens
-    colmap_model(data / medium, work, lens(data))
-    return pipeline_truth.align_to_truth(PROGRAMS, work, data)
-
-
-def cloud(work, scene, medium, model, name, *, housing=None, level=0):
-    truth, folder = truth_of(scene), work / f"{scene}-{name}"
-    densified(folder, model, truth.data / medium, housing, "--resolution-level", level)
-    return runs.evaluate(folder, truth, medium)
 
 
 def millimetres(result):

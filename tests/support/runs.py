@@ -145,13 +145,13 @@ def megapixels(folder):
     return total / 1e6
 
 
-def evaluate(folder, truth, medium, align="none"):
+def evaluate(folder, truth, medium):
     """Compares the dense cloud of `folder` with the true mesh. Lengths are in metres."""
     housing = truth.housing(medium)
-    file = folder / f"evaluation-{align}.json"
+    file = folder / "cloud-evaluation.json"
     measured(folder / "evaluate.log", *PROGRAMS.evaluate(
         folder / "scene_dense.ply", truth.mesh, "--cameras", truth.data / "sparse", "--tolerance",
-        truth.tolerance, "--json", file, "--align", align,
+        truth.tolerance, "--json", file,
         *(["--housing", housing] if housing else [])))
     result = json.loads(file.read_text())
     return {"mean": result["accuracy"]["mean"], "median": result["accuracy"]["median"],
