@@ -23,7 +23,7 @@ using testing::HasSubstr;
 class ExistingMapsTest : public testing::Test {
  protected:
   ExistingMapsTest() {
-    settings_.working_folder = test::empty_folder();
+    settings_.survey.files.working_folder = test::empty_folder();
     const std::vector<Pose> poses = test::circle_of_poses(3);
     project_.scene = test::scene_of(test::dry_camera(), poses);
     for (std::size_t i = 0; i < poses.size(); ++i) {

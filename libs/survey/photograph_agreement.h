@@ -12,7 +12,7 @@
 #include "belong/sparse_places.h"
 #include "scene/scene.h"
 
-namespace axial::belong {
+namespace axial::survey {
 
 // What is known of the photograph of an image.
 struct PhotographFacts {
@@ -59,4 +59,4 @@ class PhotographSamples {
   std::mutex mutex_;
 };
 
-}  // namespace axial::belong
+}  // namespace axial::survey
