@@ -38,7 +38,7 @@ double correlation(const std::vector<std::array<double, 2>>& pairs) {
 }  // namespace
 
 PhotographSamples::PhotographSamples(const Scene& scene) : images_(scene.images.size()) {
-  Cameras cameras(scene);
+  SceneCameras cameras(scene);
   std::uint32_t number = 0;
   for (const SparsePlace& place :
        spread_places(scene, cameras, kMostSampledPlaces, kMostSightsOfPlace)) {

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "belong/sparse_places.h"
+#include "scene/sparse_places.h"
 #include "scene/scene.h"
 
 namespace axial::survey {

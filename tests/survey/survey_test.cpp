@@ -31,6 +31,11 @@ class SurveyTest : public test::SmallSurvey {
   }
 };
 
+struct PosedCamera {
+  CameraModel camera;
+  Pose pose;
+};
+
 std::vector<std::size_t> images_of(const Survey& survey) {
   std::vector<std::size_t> images;
   for (const View& view : survey.views) images.push_back(view.image);
@@ -44,7 +49,7 @@ TEST_F(SurveyTest, CalibratedImagesAreViewsAtTheWorkingResolution) {
   EXPECT_EQ(survey.views[1].id, 12u);
   EXPECT_EQ(survey.views[1].camera.width, 48);
   EXPECT_EQ(survey.views[1].pixels(), 48u * 36u);
-  EXPECT_EQ(cameras_of<View>(survey)[1].pose.centre, survey.scene.images[2].pose.centre);
+  EXPECT_EQ(cameras_of<PosedCamera>(survey)[1].pose.centre, survey.scene.images[2].pose.centre);
 }
 
 TEST_F(SurveyTest, AListNamesTheImagesToUse) {
@@ -89,8 +94,8 @@ TEST_F(SurveyTest, TooLittleMemoryIsAnErrorUnlessThereIsNoLimit) {
 }
 
 TEST_F(SurveyTest, AFolderMustHaveAMaskForEachPhotograph) {
-  const fs::path masks = folder_ / "masks";
-  fs::create_directories(masks);
+  const std::filesystem::path masks = folder_ / "masks";
+  std::filesystem::create_directories(masks);
   options_.mask_folder = masks;
   const LogCapture log;
   EXPECT_TRUE(opened().views[0].mask.empty());
