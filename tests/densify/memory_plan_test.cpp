@@ -89,7 +89,7 @@ class Held {
            plan_.in_flight * io::dmap_bytes_needed(kPixels);
   }
   std::uint64_t decoding() const {
-    return images() + plan_.decodes * (decode() + bytes_needed({kPixels, masks_, colors_}));
+    return images() + plan_.decodes * (decode() + survey::bytes_needed({kPixels, masks_, colors_}));
   }
   std::uint64_t fusing() const {
     return images() +

@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "cloud/fusion_map.h"
+#include "densify/project.h"
 #include "depth/filters.h"
 #include "depth/patch_match.h"
 #include "io/images/image.h"
