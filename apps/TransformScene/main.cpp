@@ -112,18 +112,19 @@ std::vector<NamedOutput> outputs_of(const Options& options, const Files& files) 
   return outputs;
 }
 
-// Called before the work. Makes the folders of copied textures.
-void check_outputs(const Options& options, const Files& files, survey::Survey& survey) {
-  survey.add_inputs(std::vector{options.cloud, options.mesh, options.align, options.transform,
-                                options.positions});
-  survey.add_inputs(io::files_of_mesh(options.mesh));
+// Called before the scene is read. Makes the folders of copied textures.
+void check_outputs(const Options& options, const Files& files) {
+  std::vector<fs::path> inputs = io::files_of_scene(options.survey.files);
+  inputs.insert(inputs.end(),
+                {options.cloud, options.mesh, options.align, options.transform, options.positions});
+  for (const fs::path& file : io::files_of_mesh(options.mesh)) inputs.push_back(file);
   for (const TextureCopy& texture : files.textures) {
-    survey.inputs.push_back(texture.from);
-    if (!texture.needed) survey.inputs.push_back(texture.to);
+    inputs.push_back(texture.from);
+    if (!texture.needed) inputs.push_back(texture.to);
   }
   const std::vector<NamedOutput> outputs = outputs_of(options, files);
   for (const NamedOutput& output : outputs)
-    require_not_an_input(output.path, survey.inputs, output.setting);
+    require_not_an_input(output.path, inputs, output.setting);
   require_different(outputs);
   std::error_code ignored;
   for (const NamedOutput& output : outputs) {
@@ -131,6 +132,12 @@ void check_outputs(const Options& options, const Files& files, survey::Survey& s
       fs::create_directories(output.path.parent_path(), ignored);
     require_writable(output.path);
   }
+}
+
+// Error if an output is a photograph, a mask or a depth map of the scene.
+void keep_images(const Options& options, const Files& files, const survey::Survey& survey) {
+  for (const NamedOutput& output : outputs_of(options, files))
+    require_not_an_input(output.path, survey.inputs, output.setting);
 }
 
 // Warns of a mesh or a cloud that does not belong to the scene, which is still unmoved. The
@@ -272,8 +279,9 @@ int run(int argc, char** argv) {
   std::optional<OutputLock> lock;
   const bool writes = !outputs_of(options, files).empty();
   if (writes) lock.emplace(options.output, LockUse::alone, ParentFolder::made);
+  check_outputs(options, files);
   survey::Survey survey = survey::open_scene(options.survey);
-  check_outputs(options, files, survey);
+  keep_images(options, files, survey);
   for (const MovedPly& ply : files.plys) warn_of_foreign_points(options, survey, ply.input);
   const FrameMove move = find_move(options, survey);
   check_scale(options, survey, move.similarity);
