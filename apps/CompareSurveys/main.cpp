@@ -5,41 +5,31 @@
 #include <system_error>
 #include <vector>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/naming.h"
 #include "base/output_lock.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "base/same_file.h"
 #include "belong/surface_check.h"
 #include "compare/write_changes.h"
 #include "geometry/seen_part.h"
 #include "io/cameras/geo_offset.h"
 #include "io/openmvs/mesh_of_scene.h"
-#include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
-#include "io/openmvs/scene_with_cameras.h"
 #include "io/ply/ply.h"
 #include "io/textured/textured_mesh.h"
 #include "map/up_direction.h"
 #include "scene/check_mesh.h"
 #include "scene/marked_faces.h"
 #include "settings.h"
+#include "survey/survey.h"
 
 namespace axial::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The memory of the program itself: code and libraries, stacks, small blocks.
-constexpr std::uint64_t kProgramBytes = 96 * kMegabyte;
-
-MemoryAllowance memory_of(const Settings& settings) {
-  return {settings.max_memory, "--max-memory", kProgramBytes};
-}
 
 compare::ChangeFiles change_files(const Settings& settings) {
   const auto named = [&](const char* end) { return fs::path(settings.output.string() + end); };
@@ -67,7 +57,7 @@ Mesh read_shape(const fs::path& path, const fs::path& scene, const LocalFrame& f
 
 Mesh read_survey(const Settings& settings, const fs::path& path, const fs::path& scene,
                  const LocalFrame& frame) {
-  memory_of(settings).require(io::bytes_to_read_mesh(path), "reading " + path.string());
+  settings.compare.memory.require(io::bytes_to_read_mesh(path), "reading " + path.string());
   Mesh mesh = read_shape(path, scene, frame);
   mesh.colors = {};
   naming(path, [&] { check_mesh(mesh); });
@@ -89,12 +79,11 @@ std::vector<map::Photo> read_photos(const Settings& settings, const fs::path& pa
                                     const LocalFrame& frame, const MeshFile& survey) {
   std::vector<map::Photo> photos;
   if (path.empty()) return photos;
-  if (const auto counts = io::count_mvs(path))
-    memory_of(settings).require(counts->reading_bytes(), "reading " + path.string());
-  io::SceneFiles files;
-  files.scene = path;
-  files.working_folder = settings.working_folder;
-  io::SceneWithCameras scene = io::read_scene_with_cameras(files);
+  survey::Options options;
+  options.files.scene = path;
+  options.files.working_folder = settings.working_folder;
+  options.memory = settings.compare.memory;
+  survey::Survey scene = survey::open_scene(options);
   enter(LocalFrame{frame.origin - scene.frame.origin}, scene.scene);
   for (const SceneImage& image : scene.scene.images)
     if (image.calibrated) photos.push_back({image.camera, image.pose});
@@ -106,7 +95,7 @@ std::vector<map::Photo> read_photos(const Settings& settings, const fs::path& pa
 // A frame near the mesh of the earlier survey.
 LocalFrame frame_of_survey(const Settings& settings, const fs::path& path, const fs::path& scene) {
   if (const LocalFrame lost = lost_offset(path, scene); !lost.is_world()) return lost;
-  memory_of(settings).require(io::bytes_to_read_mesh(path), "reading " + path.string());
+  settings.compare.memory.require(io::bytes_to_read_mesh(path), "reading " + path.string());
   return frame_near(io::mesh_place(path).first_vertex);
 }
 
@@ -119,8 +108,7 @@ void keep_inputs(const Settings& settings) {
     for (const fs::path& file : io::files_of_scene({scene, settings.working_folder, {}}))
       inputs.push_back(file);
   }
-  require_no_inputs(outputs, inputs, "--output-file");
-  for (const fs::path& file : outputs) require_writable(file);
+  survey::keep_inputs(outputs, inputs, "--output-file");
 }
 
 // True if the coordinates of the surveys are those of a reference system: if they are far from the
@@ -142,7 +130,7 @@ NearSide near_side(const Settings& settings, const fs::path& path,
   return naming(path, [&]() -> NearSide {
     const Eigen::Vector3d turned = compare::mean_normal(mesh);
     if (photos.empty()) return {path, false, turned};
-    memory_of(settings).require(geometry::bytes_of_sights(mesh), "what the cameras see");
+    settings.compare.memory.require(geometry::bytes_of_sights(mesh), "what the cameras see");
     const geometry::SeenPart part = geometry::find_seen_part(mesh, geometry::posed_cameras(photos));
     geometry::warn_if_inside_out(part, path);
     geometry::warn_of_strays(part, path, mesh.faces.size());
@@ -261,6 +249,7 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
   Settings settings = options.settings;
+  settings.compare.memory = {settings.max_memory, "--max-memory", 96 * kMegabyte};
   const ThreadLimit limit(options.parsed.common.max_threads);
   compare::ChangeFacts facts{settings.before.filename().string(),
                              settings.after.filename().string()};
@@ -276,7 +265,6 @@ int run(int argc, char** argv) {
       read_photos(settings, settings.scene_after, frame, {after, settings.after});
   return_freed_memory();
   facts.aligned = settings.compare.align;
-  settings.compare.memory = memory_of(settings);
   const NearSide near_before =
       near_side(settings, settings.before, settings.compare.photos.before, before);
   const NearSide near_after =

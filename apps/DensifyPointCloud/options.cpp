@@ -28,6 +28,7 @@ struct Raw {
   std::string point_cloud, neighbour_lists, neighbour_lists_output, dense_config, pinhole_export;
   std::string report, part, plan, tile;
   std::string camera_model = "auto", projection = "exact", warp = "affine", precision = "float";
+  bool refractive = false;
   int fusion_mode = 0, tower_mode = 0;
   double estimate_roi = 2;
 };
@@ -48,16 +49,16 @@ std::vector<NotBuilt> not_built_hidden() {
 void declare_io(OptionList& list, Raw& raw, Settings& settings) {
   list.add("input-file,i", &raw.input, "scene with cameras and images")
       .add("output-file,o", &raw.output, "scene and cloud to write (<input>_dense.mvs)")
-      .add_with_default("resolution-level", &settings.resolution.level,
+      .add_with_default("resolution-level", &settings.survey.resolution.level,
                         "how many times the images are halved before matching")
-      .add_with_default("max-resolution", &settings.resolution.max,
+      .add_with_default("max-resolution", &settings.survey.resolution.max,
                         "largest length of the longest side [px]")
-      .add_with_default("min-resolution", &settings.resolution.min,
+      .add_with_default("min-resolution", &settings.survey.resolution.min,
                         "the longest side is not halved below this [px]")
       .add("mask-path", &raw.mask_path,
            "folder with a mask for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
            "a.jpg, in the same subfolders as the images")
-      .add_with_default("ignore-mask-label", &settings.ignore_mask_label,
+      .add_with_default("ignore-mask-label", &settings.survey.ignore_mask_label,
                         "mask value to leave out; below 0: no masks (default with --mask-path: 0)")
       .add_with_default("output-precision", &raw.precision,
                         "precision of the cloud's positions: float, relative to the scene's offset "
@@ -72,7 +73,7 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
       .add_with_default("overwrite-dmaps", &settings.overwrite_dmaps,
                         "overwrite depth maps of other programs in the working folder")
       .add_with_default(
-          "max-memory", &settings.max_memory,
+          "max-memory", &settings.survey.memory.megabytes,
           "largest memory to use [MB] (0: 70 % of the free memory); --estimate-colors 1 and "
           "--estimate-normals 1 keep the whole cloud in additional memory");
 }
@@ -158,9 +159,8 @@ void declare_points(OptionList& list, Raw& raw, Settings& settings) {
            "OpenMVS's Densify.ini: settings that have no option; written if it does not exist");
 }
 
-void declare_camera(OptionList& list, Raw& raw, Settings& settings) {
-  list.add_switch("refractive", &settings.refractive,
-                  "cameras are behind ports: require a housing file")
+void declare_camera(OptionList& list, Raw& raw) {
+  list.add_switch("refractive", &raw.refractive, "cameras are behind ports: require a housing file")
       .add("housing", &raw.housing, "housing file (<scene>.housing.json)")
       .add_with_default("camera-model", &raw.camera_model,
                         "auto: as in the housing file, pinhole: ignore the housing file, flatport: "
@@ -190,9 +190,9 @@ void check_range(const std::string& name, T value, T low, T high) {
 }
 
 void check_values(const Settings& settings, const Raw& raw) {
-  check_range("resolution-level", settings.resolution.level, 0u, 16u);
-  check_range("max-resolution", settings.resolution.max, 16, 1 << 16);
-  check_range("min-resolution", settings.resolution.min, 1, 1 << 16);
+  check_range("resolution-level", settings.survey.resolution.level, 0u, 16u);
+  check_range("max-resolution", settings.survey.resolution.max, 16, 1 << 16);
+  check_range("min-resolution", settings.survey.resolution.min, 1, 1 << 16);
   check_range("sub-resolution-levels", settings.matching.sub_resolution_levels, 0, 8);
   check_range("number-views", settings.number_views, 0u, 32u);
   check_range("iters", settings.matching.iterations, 1, 60);
@@ -207,8 +207,9 @@ void check_values(const Settings& settings, const Raw& raw) {
   if (const double value = raw.estimate_roi; value != 1.1 && value != std::floor(value))
     fail("--estimate-roi {}: must be 0, 1 or 2; 1.1, the default of OpenMVS 2.4, means 2", value);
   check_range("estimate-roi", raw.estimate_roi, 0.0, 2.0);
-  check_range("max-memory", settings.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
-  io::check_bit_depth(settings.bit_depth, option_of("bit_depth"));
+  check_range("max-memory", settings.survey.memory.megabytes, std::uint64_t{0},
+              std::uint64_t{1} << 40);
+  io::check_bit_depth(settings.survey.bit_depth, option_of("bit_depth"));
   check_range("roi-border", settings.roi_border, -1e6, 1e6);
   check_range("export-number-views", settings.export_number_views, -255, 255);
   check_range("estimate-scale", settings.estimate_scale, 0.0, 1e6);
@@ -231,11 +232,12 @@ void warn_of_no_effect(const Settings& settings, const Raw& raw) {
 
 // The values of the options that are names.
 void take_choices(const Raw& raw, Settings& settings) {
-  using densify::CameraChoice;
-  settings.camera = one_of<CameraChoice>("camera-model", raw.camera_model,
-                                         {{"auto", CameraChoice::automatic},
-                                          {"pinhole", CameraChoice::pinhole},
-                                          {"flatport", CameraChoice::flat_port}});
+  using io::PortChoice;
+  settings.survey.files.ports =
+      one_of<PortChoice>("camera-model", raw.camera_model,
+                         {{"auto", raw.refractive ? PortChoice::required : PortChoice::automatic},
+                          {"pinhole", PortChoice::ignored},
+                          {"flatport", PortChoice::flat}});
   settings.double_precision =
       one_of<bool>("output-precision", raw.precision, {{"float", false}, {"double", true}});
   settings.projection = one_of<ProjectionMethod>(
@@ -243,26 +245,26 @@ void take_choices(const Raw& raw, Settings& settings) {
       {{"exact", ProjectionMethod::exact}, {"line-search", ProjectionMethod::line_search}});
   settings.matching.warp = one_of<depth::Warp>(
       "warp", raw.warp, {{"affine", depth::Warp::affine}, {"homography", depth::Warp::homography}});
-  if (settings.refractive && settings.camera == CameraChoice::pinhole)
+  if (raw.refractive && settings.survey.files.ports == PortChoice::ignored)
     fail("--refractive contradicts --camera-model pinhole");
 }
 
 void take_paths(const CommonOptions& common, const Raw& raw, Settings& settings) {
   const auto path = [&](const std::string& given) { return in_working_folder(common, given); };
-  settings.working_folder = common.working_folder;
-  settings.input = path(raw.input);
+  settings.survey.files.working_folder = common.working_folder;
+  settings.survey.files.scene = path(raw.input);
   settings.output = with_extension(
-      output_or(common, raw.output, without_known_extension(settings.input) += "_dense",
-                "--output-file"),
+      output_or(common, raw.output,
+                without_known_extension(settings.survey.files.scene) += "_dense", "--output-file"),
       ".mvs");
   refuse_other_format(path(raw.output), "--output-file");
-  settings.housing = path(raw.housing);
+  settings.survey.files.housing = path(raw.housing);
   settings.point_cloud = path(raw.point_cloud);
   settings.neighbour_lists = path(raw.neighbour_lists);
   settings.neighbour_lists_output =
       output_in_working_folder(common, raw.neighbour_lists_output, "--output-view-neighbors-file");
   settings.report = output_in_working_folder(common, raw.report, "--report-file");
-  settings.mask_folder = path(raw.mask_path);
+  settings.survey.mask_folder = path(raw.mask_path);
   settings.pinhole_export =
       folder_in_working_folder(common, raw.pinhole_export, "--pinhole-export");
   settings.plan = output_in_working_folder(common, raw.plan, "--plan");
@@ -311,8 +313,8 @@ void convert(const Raw& raw, Options& options) {
     settings.other_inputs.push_back(file);
   }
   take_paths(common, raw, settings);
-  if (!settings.mask_folder.empty() && !given(options.parsed, "ignore-mask-label"))
-    settings.ignore_mask_label = 0;
+  if (!settings.survey.mask_folder.empty() && !given(options.parsed, "ignore-mask-label"))
+    settings.survey.ignore_mask_label = 0;
   take_choices(raw, settings);
   settings.make_maps = raw.fusion_mode >= 0;
   settings.fuse = raw.fusion_mode <= 0;
@@ -324,7 +326,7 @@ void convert(const Raw& raw, Options& options) {
   settings.fusion.two_if_undisputed = !given(options.parsed, "number-views-fuse");
   settings.pictures = pictures_of(common.verbosity);
   settings.max_threads = common.max_threads;
-  settings.name_of = option_of;
+  settings.survey.files.name_of = option_of;
   take_tiles(raw.tile, options);
 }
 
@@ -347,13 +349,13 @@ Options parse_command_line(int argc, const char* const* argv) {
   Raw raw;
   ProgramOptions program = described_program();
   declare_io(program.visible, raw, settings);
-  io::declare_bit_depth(program.visible, settings.bit_depth);
-  declare_camera(program.visible, raw, settings);
+  io::declare_bit_depth(program.visible, settings.survey.bit_depth);
+  declare_camera(program.visible, raw);
   declare_matching(program.visible, settings);
   declare_parts(program.visible, raw, settings);
   declare_fusion(program.visible, raw, settings);
   declare_points(program.visible, raw, settings);
-  UnusedInput::declare(program.visible, settings.allow_missing);
+  UnusedInput::declare(program.visible, settings.survey.files.allow_missing);
   std::vector<NotBuilt> visible = not_built(), hidden = not_built_hidden();
   declare_not_built(program.visible, visible);
   declare_not_built(program.hidden, hidden);

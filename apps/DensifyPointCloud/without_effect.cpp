@@ -56,7 +56,7 @@ void warn_of_options_an_export_ignores(const Options& options) {
 
 void warn_of_options_without_effect(const Options& options) {
   const Settings& settings = options.settings;
-  if (settings.camera == densify::CameraChoice::pinhole)
+  if (settings.survey.files.ports == io::PortChoice::ignored)
     warn_of(options, {"housing"}, "with --camera-model pinhole");
   if (only_exports(settings)) return warn_of_options_an_export_ignores(options);
   if (!settings.neighbour_lists_output.empty()) {

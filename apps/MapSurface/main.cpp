@@ -8,19 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/naming.h"
 #include "base/output_lock.h"
 #include "base/parallel.h"
-#include "base/same_file.h"
 #include "belong/surface_check.h"
 #include "geometry/seen_part.h"
 #include "io/openmvs/mesh_of_scene.h"
-#include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
-#include "io/openmvs/scene_files.h"
 #include "io/textured/textured_mesh.h"
 #include "map/height_error.h"
 #include "map/pixel_width.h"
@@ -30,19 +26,14 @@
 #include "scene/check_mesh.h"
 #include "scene/marked_faces.h"
 #include "settings.h"
+#include "survey/photographs.h"
+#include "texture/photograph_source.h"
 #include "texture/texture_mesh.h"
 
 namespace axial::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The memory of the program itself: code and libraries, stacks, small blocks.
-constexpr std::uint64_t kProgramBytes = 96 * kMegabyte;
-
-MemoryAllowance memory_of(const Settings& settings) {
-  return {settings.max_memory, "--max-memory", kProgramBytes};
-}
 
 map::MapFiles map_files(const Settings& settings) {
   const auto named = [&](const char* end) { return fs::path(settings.output.string() + end); };
@@ -76,10 +67,10 @@ void remove_stale_maps(const Settings& settings) {
 TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame) {
   const std::string work = "reading " + settings.mesh.string();
   const std::uint64_t bytes = io::bytes_to_read_mesh(settings.mesh);
-  memory_of(settings).require(bytes, work);
+  settings.survey.memory.require(bytes, work);
   TexturedMesh mesh;
   if (io::is_textured_mesh(settings.mesh)) {
-    memory_of(settings).require(bytes + io::bytes_to_read_textures(settings.mesh), work);
+    settings.survey.memory.require(bytes + io::bytes_to_read_textures(settings.mesh), work);
     mesh = io::read_textured_mesh_of_scene(frame, settings.mesh);
   } else {
     mesh.mesh = io::read_mesh_of_scene(frame, settings.mesh);
@@ -97,16 +88,6 @@ TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame) {
   return mesh;
 }
 
-void keep_inputs(const Settings& settings, const texture::Photographs& photographs) {
-  std::vector<fs::path> inputs = photographs.files();
-  for (const fs::path& file : io::files_of_scene(settings.scene)) inputs.push_back(file);
-  for (const fs::path& file : io::files_of_mesh(settings.mesh)) inputs.push_back(file);
-  inputs.push_back(settings.photographs.views_file);
-  const std::vector<fs::path> outputs = map_files(settings).all();
-  require_no_inputs(outputs, inputs, "--output-file");
-  for (const fs::path& file : outputs) require_writable(file);
-}
-
 struct PlacedMap {
   map::MapFrame frame;
   LocalFrame mesh_frame;
@@ -114,28 +95,21 @@ struct PlacedMap {
   bool is_georeferenced = false;
 };
 
-std::vector<Eigen::Vector3d> centres_of(const std::vector<texture::View>& views) {
+std::vector<Eigen::Vector3d> centres_of(const survey::Survey& survey) {
   std::vector<Eigen::Vector3d> centres;
-  centres.reserve(views.size());
-  for (const texture::View& view : views) centres.push_back(view.pose.centre);
+  centres.reserve(survey.views.size());
+  for (const survey::View& view : survey.views) centres.push_back(view.pose.centre);
   return centres;
-}
-
-std::vector<map::Photo> photos_of(const std::vector<texture::View>& views) {
-  std::vector<map::Photo> photos;
-  photos.reserve(views.size());
-  for (const texture::View& view : views) photos.push_back({view.camera, view.pose});
-  return photos;
 }
 
 // Prepares the mesh: removes stray faces, and turns a mesh that is inside out, because the sides
 // that the cameras see are those to map. Returns the direction from which they are seen
 // (geometry::SeenPart::facing).
-Eigen::Vector3d keep_seen_part(const Settings& settings, const std::vector<texture::View>& views,
+Eigen::Vector3d keep_seen_part(const Settings& settings, const survey::Survey& survey,
                                TexturedMesh& mesh) {
-  memory_of(settings).require(geometry::bytes_of_sights(mesh.mesh), "what the cameras see");
+  settings.survey.memory.require(geometry::bytes_of_sights(mesh.mesh), "what the cameras see");
   const geometry::SeenPart part =
-      geometry::find_seen_part(mesh.mesh, geometry::posed_cameras(views));
+      geometry::find_seen_part(mesh.mesh, survey::cameras_of<geometry::PosedCamera>(survey));
   geometry::warn_if_inside_out(part, settings.mesh);
   geometry::warn_of_strays(part, settings.mesh, mesh.mesh.faces.size());
   geometry::erase_at(part.strays, mesh.mesh.faces);
@@ -161,15 +135,14 @@ void check_up(const Settings& settings, const Eigen::Vector3d& up, const Eigen::
   log_warning(
       "{}: the cameras are below the surface that they see, and the map shows its far side: are "
       "the positions depths, positive downwards, or do they state northing before easting?",
-      settings.scene.scene.string());
+      settings.survey.files.scene.string());
 }
 
 // Error for a map that is far larger than the photographs can fill.
-void require_resolved(const map::MapGrid& grid, const std::vector<texture::View>& views) {
+void require_resolved(const map::MapGrid& grid, const survey::Survey& survey) {
   constexpr double kMost = 1000;  // as many pixels as all photographs have together
   double pixels = 0;
-  for (const texture::View& view : views)
-    pixels += double{1} * view.camera.width * view.camera.height;
+  for (const survey::View& view : survey.views) pixels += static_cast<double>(view.pixels());
   if (static_cast<double>(grid.pixels()) > kMost * pixels)
     fail(
         "the map would have {} x {} pixels of {:.4g} m, and all photographs together have {:.0f} "
@@ -178,11 +151,10 @@ void require_resolved(const map::MapGrid& grid, const std::vector<texture::View>
         option_of("ground_sample_distance"));
 }
 
-double pixel_of(const Settings& settings, const Mesh& mesh,
-                const std::vector<texture::View>& views) {
+double pixel_of(const Settings& settings, const Mesh& mesh, const survey::Survey& survey) {
   if (settings.pixel > 0) return settings.pixel;
-  memory_of(settings).require(map::bytes_of_pixel_width(mesh), "the width of a pixel");
-  return map::rounded_width(map::median_pixel_width(mesh, photos_of(views)));
+  settings.survey.memory.require(map::bytes_of_pixel_width(mesh), "the width of a pixel");
+  return map::rounded_width(map::median_pixel_width(mesh, survey::cameras_of<map::Photo>(survey)));
 }
 
 // Warns if the code names a reference system, although the scene lies near the origin of its
@@ -192,24 +164,25 @@ void warn_of_local_coordinates(const Settings& settings, const LocalFrame& frame
     log_warning(
         "--epsg {}: the coordinates of {} are within 1 km of the origin: are they local "
         "coordinates? The maps state the system all the same",
-        settings.epsg, settings.scene.scene.string());
+        settings.epsg, settings.survey.files.scene.string());
 }
 
 // Heights are along z if the coordinates of the scene are those of a reference system: if the scene
 // has an offset, or if the user names the system.
-PlacedMap place_map(const Settings& settings, const Mesh& mesh, const LocalFrame& frame,
-                    const std::vector<texture::View>& views, const Eigen::Vector3d& facing) {
+PlacedMap place_map(const Settings& settings, const Mesh& mesh, const survey::Survey& survey,
+                    const Eigen::Vector3d& facing) {
+  const LocalFrame& frame = survey.frame;
   const bool has_system = !frame.is_world() || settings.epsg > 0;
   const Eigen::Vector3d up = settings.up  ? *settings.up
                              : has_system ? Eigen::Vector3d::UnitZ()
-                                          : map::fitted_up(mesh, centres_of(views));
+                                          : map::fitted_up(mesh, centres_of(survey));
   check_up(settings, up, facing);
   PlacedMap map;
   map.mesh_frame = frame;
   map.frame = map::frame_with_up(up, frame);
   map.is_georeferenced = has_system && map.frame.axes.isIdentity(0);
-  map.grid = map::grid_around(mesh, map.frame, pixel_of(settings, mesh, views), option_of);
-  require_resolved(map.grid, views);
+  map.grid = map::grid_around(mesh, map.frame, pixel_of(settings, mesh, survey), option_of);
+  require_resolved(map.grid, survey);
   const auto& axes = map.frame.axes;
   log_info("map of {} x {} pixels of {:.4g} m", map.grid.columns, map.grid.rows, map.grid.pixel);
   log_info("map's x: {:.4f} {:.4f} {:.4f}, y: {:.4f} {:.4f} {:.4f}, up: {:.4f} {:.4f} {:.4f}",
@@ -258,41 +231,40 @@ FaceFacts facts_of(const Mesh& mesh, const texture::FaceViews& seen,
   return facts;
 }
 
-texture::ImageSource source_of(const texture::Photographs& photographs) {
-  return [&](std::size_t view) { return already_named([&] { return photographs.load(view); }); };
-}
-
 // The memory [bytes] that is left besides FaceFacts, at least 1, because 0 stands for no limit.
 // Splitting adds few faces to a large mesh.
 std::uint64_t left_for_views(const Mesh& mesh, const Settings& settings) {
-  const std::uint64_t left = memory_of(settings).left();
+  const std::uint64_t left = settings.survey.memory.left();
   const std::uint64_t facts = bytes_of_facts(mesh);
   return left > facts ? left - facts : 1;
 }
 
 // The views of the faces of a mesh that has its textures.
 FaceFacts look_at_faces(const Mesh& mesh, const Settings& settings,
-                        const texture::Photographs& photographs,
+                        const survey::Photographs& photographs,
                         const std::optional<map::HeightErrors>& errors) {
   const texture::FaceViews seen = texture::find_face_views(
-      mesh, photographs.views(), source_of(photographs), {}, console_progress("Numbers of views"),
-      {texture::Budget(left_for_views(mesh, settings), option_of), photographs.bytes_to_load()});
+      mesh, survey::cameras_of<texture::View>(photographs.survey()),
+      texture::source_of(photographs), {}, console_progress("Numbers of views"),
+      {texture::Budget(left_for_views(mesh, settings), option_of),
+       photographs.bytes_to_read_color()});
   return facts_of(mesh, seen, errors);
 }
 
 // Gives the mesh textures. `facts`: of the faces of the textured mesh.
 TexturedMesh textured(TexturedMesh mesh, const Settings& settings,
-                      const texture::Photographs& photographs,
+                      const survey::Photographs& photographs,
                       const std::optional<map::HeightErrors>& errors, FaceFacts& facts) {
   texture::Options options;
   options.max_bytes = left_for_views(mesh.mesh, settings);
-  options.image_bytes = photographs.bytes_to_load();
+  options.image_bytes = photographs.bytes_to_read_color();
   options.name_of = option_of;
   options.take_views = [&](const Mesh& split, const texture::FaceViews& seen) {
     facts = facts_of(split, seen, errors);
   };
   TexturedMesh result = texture::texture_mesh(
-      std::move(mesh.mesh), photographs.views(), source_of(photographs), options, nullptr,
+      std::move(mesh.mesh), survey::cameras_of<texture::View>(photographs.survey()),
+      texture::source_of(photographs), options, nullptr,
       [](const std::string& stage) { return console_progress(stage); });
   return_freed_memory();
   return result;
@@ -305,7 +277,7 @@ void write(const Settings& settings, const TexturedMesh& mesh, const FaceFacts& 
   options.is_georeferenced = place.is_georeferenced;
   options.mesh_frame = place.mesh_frame;
   options.contour_interval = settings.contours;
-  options.memory = memory_of(settings);
+  options.memory = settings.survey.memory;
   options.name_of = option_of;
   const map::MapFiles files = map_files(settings);
   const map::MapReport report =
@@ -328,33 +300,30 @@ int run(int argc, char** argv) {
   const ThreadLimit limit(options.parsed.common.max_threads);
   const std::string crs = settings.epsg > 0 ? map::crs_of_epsg(settings.epsg, option_of) : "";
   const OutputLock lock = lock_output(map_files(settings).heights);
-  if (const auto counts = io::count_mvs(settings.scene.scene))
-    memory_of(settings).require(counts->reading_bytes(),
-                                "reading " + settings.scene.scene.string());
-  io::SceneWithCameras scene = io::read_scene_with_cameras(settings.scene);
-  TexturedMesh mesh = read_mesh(settings, scene.frame);
-  warn_of_local_coordinates(settings, scene.frame);
-  belong::check_surface(scene.scene, belong::shape_of(mesh.mesh),
-                        {settings.mesh, settings.scene.scene});
-  const texture::Photographs photographs(scene.scene, settings.scene.scene, settings.photographs);
-  const LocalFrame frame = scene.frame;
-  scene = {};
+  survey::Survey survey = survey::open_scene(settings.survey);
+  TexturedMesh mesh = read_mesh(settings, survey.frame);
+  warn_of_local_coordinates(settings, survey.frame);
+  belong::check_surface(survey.scene, belong::shape_of(mesh.mesh), {settings.mesh, survey.file()});
+  survey::find_photographs(survey);
+  survey.add_inputs(io::files_of_mesh(settings.mesh));
+  survey.scene = {};
   return_freed_memory();
-  const auto& views = photographs.views();
+  const survey::Photographs photographs(survey);
   naming(settings.mesh, [&] {
-    const Eigen::Vector3d facing = keep_seen_part(settings, views, mesh);
-    const PlacedMap place = place_map(settings, mesh.mesh, frame, views, facing);
-    keep_inputs(settings, photographs);
+    const Eigen::Vector3d facing = keep_seen_part(settings, survey, mesh);
+    const PlacedMap place = place_map(settings, mesh.mesh, survey, facing);
+    survey.keep_inputs(map_files(settings).all(), "--output-file");
     std::optional<map::HeightErrors> errors;
     if (settings.image_noise > 0)
-      errors.emplace(photos_of(views), place.frame.axes.row(2).transpose(), settings.image_noise);
+      errors.emplace(survey::cameras_of<map::Photo>(survey), place.frame.axes.row(2).transpose(),
+                     settings.image_noise);
     FaceFacts facts;
     if (mesh.textures.empty())
       mesh = textured(std::move(mesh), settings, photographs, errors, facts);
     else
       facts = look_at_faces(mesh.mesh, settings, photographs, errors);
     return_freed_memory();
-    already_named([&] { photographs.check(); });
+    already_named([&] { photographs.report(); });
     write(settings, mesh, facts, place, crs);
   });
   return 0;

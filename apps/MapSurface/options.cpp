@@ -25,8 +25,6 @@ struct Raw {
 };
 
 constexpr SettingName kOptions[] = {{"max_memory", "--max-memory"},
-                                    {"mask_folder", "--mask-path"},
-                                    {"bit_depth", "--bit-depth"},
                                     {"ground_sample_distance", "--ground-sample-distance"},
                                     {"contour_interval", "--contours"},
                                     {"epsg", "--epsg"},
@@ -38,7 +36,7 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
            "mesh to map: PLY, OBJ, GLB or glTF (<input>.ply); a mesh without textures is textured "
            "first, as by TextureMesh")
       .add("output-file,o", &raw.output, "begin of the names of the maps (<input>_map)")
-      .add_with_default("max-memory", &settings.max_memory,
+      .add_with_default("max-memory", &settings.survey.memory.megabytes,
                         "largest memory to use [MB] (0: 70 % of the free memory)");
 }
 
@@ -69,7 +67,7 @@ void declare_photographs(OptionList& list, Raw& raw, Settings& settings) {
       .add("mask-path", &raw.mask_path,
            "folder with a mask for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
            "a.jpg, in the same subfolders as the images");
-  io::declare_bit_depth(list, settings.photographs.bit_depth);
+  io::declare_bit_depth(list, settings.survey.bit_depth);
 }
 
 template <class T>
@@ -86,32 +84,29 @@ void check_values(const Raw& raw, const Settings& settings) {
   if (settings.image_noise > 0) check_range("image-noise", settings.image_noise, 1e-6, 1000.0);
   check_range("contours", settings.contours, 0.0, 1e6);
   check_range("ignore-mask-label", raw.ignore_mask_label, -2, 65535);
-  check_range("max-memory", settings.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
-  io::check_bit_depth(settings.photographs.bit_depth, "--bit-depth");
+  check_range("max-memory", settings.survey.memory.megabytes, std::uint64_t{0},
+              std::uint64_t{1} << 40);
+  io::check_bit_depth(settings.survey.bit_depth, "--bit-depth");
 }
 
-void take_masks(const Options& options, const Raw& raw, texture::PhotographOptions& photographs) {
+void take_photographs(const Options& options, const Raw& raw, survey::Options& survey) {
   const bool masks_given = !raw.mask_path.empty() && !given(options.parsed, "ignore-mask-label");
-  const int label = masks_given ? 0 : raw.ignore_mask_label;
-  photographs.masks = label >= 0    ? texture::MaskChoice::label
-                      : label == -1 ? texture::MaskChoice::black_border
-                                    : texture::MaskChoice::none;
-  photographs.mask_label = label;
-  photographs.mask_folder = in_working_folder(options.parsed.common, raw.mask_path);
-  photographs.views_file = in_working_folder(options.parsed.common, raw.views_file);
-  photographs.name_of = option_of;
+  use_mask_label(survey, masks_given ? 0 : raw.ignore_mask_label);
+  survey.mask_folder = in_working_folder(options.parsed.common, raw.mask_path);
+  survey.views_file = in_working_folder(options.parsed.common, raw.views_file);
+  survey.compares_photographs = true;
 }
 
 void convert(const Raw& raw, Options& options) {
   Settings& settings = options.settings;
   const CommonOptions& common = options.parsed.common;
-  settings.scene = io::scene_files(raw.scene, raw.input, common);
-  const fs::path& scene = settings.scene.scene;
+  settings.survey.files = io::scene_files(raw.scene, raw.input, common);
+  const fs::path& scene = settings.survey.files.scene;
   settings.mesh = raw.mesh.empty() ? io::cloud_beside(scene) : in_working_folder(common, raw.mesh);
   settings.output =
       output_or(common, raw.output, without_known_extension(scene) += "_map", "--output-file");
   settings.up = map::parse_up(raw.up, settings.epsg, option_of);
-  take_masks(options, raw, settings.photographs);
+  take_photographs(options, raw, settings.survey);
 }
 
 }  // namespace
@@ -122,6 +117,8 @@ std::string option_of(std::string_view setting) {
 
 Options parse_command_line(int argc, const char* const* argv) {
   Options options;
+  options.settings.survey.memory = {0, "--max-memory", 96 * kMegabyte};
+  options.settings.survey.resolution = {0, 640, 1 << 20};
   Raw raw;
   ProgramOptions program{
       "MapSurface",

@@ -8,14 +8,13 @@
 #include <string>
 
 #include "base/program.h"
-#include "io/openmvs/scene_with_cameras.h"
 #include "map/height_error.h"
-#include "texture/photographs.h"
+#include "survey/options.h"
 
 namespace axial::apps {
 
 struct Settings {
-  io::SceneFiles scene;
+  survey::Options survey;
   std::filesystem::path mesh;
   std::filesystem::path output;       // the names of the maps without ".dem.tif" and so on
   std::optional<Eigen::Vector3d> up;  // in the world; empty: see map_frame() in main.cpp
@@ -25,8 +24,6 @@ struct Settings {
   double image_noise =
       map::kDefaultNoise;  // for the expected errors of heights [px]; 0: no map of them
   double contours = 0;     // height between contour lines [m]; 0: none
-  texture::PhotographOptions photographs;
-  std::uint64_t max_memory = 0;  // [MB]; 0: 70 % of the free memory
 };
 
 struct Options {

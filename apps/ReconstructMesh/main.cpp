@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -8,17 +7,15 @@
 #include "base/output_lock.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "base/same_file.h"
 #include "belong/surface_check.h"
 #include "io/obj/mesh_file.h"
-#include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
-#include "io/openmvs/scene_files.h"
 #include "io/textured/textured_mesh.h"
 #include "mesh/point_distances.h"
 #include "mesh/unseen.h"
 #include "options.h"
 #include "scene/region.h"
+#include "survey/survey.h"
 #include "tiled.h"
 
 namespace axial::apps {
@@ -26,36 +23,30 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The memory of the program itself: code and libraries, stacks, small blocks.
-constexpr std::uint64_t kProgramBytes = 60 * kMegabyte;
-
 // Several runs may make tiles of one mesh at the same time.
 LockUse lock_use(const Options& options) {
   return options.tile > 0 ? LockUse::shared : LockUse::alone;
 }
 
-void check_outputs(const Options& options) {
-  std::vector<fs::path> inputs = io::files_of_scene(options.scene);
-  inputs.push_back(cloud_file(options));
-  for (const fs::path& file : io::files_of_mesh(options.mesh)) inputs.push_back(file);
-  require_not_an_input(options.output, inputs, "--output-file");
-  require_writable(options.output);
-}
-
-MemoryAllowance memory_of(const Options& options) {
-  return {options.max_memory, "--max-memory", kProgramBytes};
+survey::Survey open(const Options& options) {
+  survey::Survey survey = survey::open_scene(options.survey);
+  survey.add_inputs(std::vector{cloud_file(options)});
+  survey.add_inputs(io::files_of_mesh(options.mesh));
+  survey.keep_inputs(std::vector{options.output}, "--output-file");
+  if (auto& region = survey.scene.region) region = with_border(*region, options.roi_border);
+  return survey;
 }
 
 Mesh reconstruct(const io::SceneWithCameras& scene, const Options& options) {
   const fs::path file = cloud_file(options);
   if (!file.empty())
-    memory_of(options).require(io::bytes_to_read_cloud(file), "reading " + file.string());
+    options.survey.memory.require(io::bytes_to_read_cloud(file), "reading " + file.string());
   PointCloud cloud =
       file.empty() ? cloud_of(scene.scene) : io::read_cloud_of_scene(scene.frame, file);
-  const fs::path& source = file.empty() ? options.scene.scene : file;
+  const fs::path& source = file.empty() ? options.survey.files.scene : file;
   log_info("Cloud {}: {} points", source.filename().string(), cloud.size());
   if (!file.empty())
-    belong::check_surface(scene.scene, belong::shape_of(cloud), {file, options.scene.scene});
+    belong::check_surface(scene.scene, belong::shape_of(cloud), {file, options.survey.files.scene});
   return naming(source, [&] {
     return mesh::reconstruct(std::move(cloud), scene.scene, options.reconstruct);
   });
@@ -63,22 +54,23 @@ Mesh reconstruct(const io::SceneWithCameras& scene, const Options& options) {
 
 // Sets `keep` if the mesh has marks of unseen faces.
 Mesh clean_given(const io::SceneWithCameras& scene, const Options& options, bool& keep) {
-  memory_of(options).require(io::bytes_to_read_mesh(options.mesh),
-                             "reading " + options.mesh.string());
+  options.survey.memory.require(io::bytes_to_read_mesh(options.mesh),
+                                "reading " + options.mesh.string());
   const Mesh mesh = io::read_mesh_of_scene(scene.frame, options.mesh);
-  belong::check_surface(scene.scene, belong::shape_of(mesh), {options.mesh, options.scene.scene});
+  belong::check_surface(scene.scene, belong::shape_of(mesh),
+                        {options.mesh, options.survey.files.scene});
   keep = keep || !mesh.unseen.empty();
-  memory_of(options).require(mesh::bytes_to_clean(mesh.vertices.size()),
-                             "cleaning " + options.mesh.string());
+  options.survey.memory.require(mesh::bytes_to_clean(mesh.vertices.size()),
+                                "cleaning " + options.mesh.string());
   return naming(options.mesh, [&] { return mesh::clean(mesh, options.reconstruct.clean); });
 }
 
 // Removes or marks the surface that no two cameras see.
 Mesh without_unseen(Mesh mesh, const io::SceneWithCameras& scene, const Options& options,
                     bool keep) {
-  memory_of(options).require(mesh::bytes_of_unseen(mesh),
-                             "finding the surface that no two cameras see");
-  const fs::path& source = options.mesh.empty() ? options.scene.scene : options.mesh;
+  options.survey.memory.require(mesh::bytes_of_unseen(mesh),
+                                "finding the surface that no two cameras see");
+  const fs::path& source = options.mesh.empty() ? options.survey.files.scene : options.mesh;
   mesh::UnseenOptions unseen;
   unseen.keep = keep;
   const mesh::CleanOptions& clean = options.reconstruct.clean;
@@ -109,12 +101,8 @@ int run(int argc, char** argv) {
   share_one_heap();
   const ThreadLimit threads(options.parsed.common.max_threads);
   const OutputLock lock = lock_output(options.output, lock_use(options));
-  check_outputs(options);
-  if (const auto counts = io::count_mvs(options.scene.scene))
-    memory_of(options).require(counts->reading_bytes(), "reading " + options.scene.scene.string());
-  io::SceneWithCameras scene = io::read_scene_with_cameras(options.scene);
-  if (scene.scene.region) scene.scene.region = with_border(*scene.scene.region, options.roi_border);
-  options.reconstruct.max_bytes = memory_limit(options.max_memory, "--max-memory");
+  const survey::Survey scene = open(options);
+  options.reconstruct.max_bytes = memory_limit(options.survey.memory.megabytes, "--max-memory");
   if (options.tile > 0) {
     make_tile(scene, options);
     return 0;

@@ -53,7 +53,7 @@ void declare_io(OptionList& list, Raw& raw, Options& options) {
       .add_with_default("export-type", &raw.export_type,
                         "format of the mesh: ply, obj or glb; if it is not given, the extension of "
                         "--output-file decides")
-      .add_with_default("max-memory", &options.max_memory,
+      .add_with_default("max-memory", &options.survey.memory.megabytes,
                         "largest memory to use [MB] (0: 70 % of the free memory)")
       .add_with_default("tiles", &options.tiles,
                         "make the mesh in this many parts, so that less memory is needed")
@@ -120,16 +120,17 @@ void check_values(const Options& options) {
   check_range("smooth", settings.clean.smooth, 0u, 1000u);
   check_range("edge-length", settings.clean.edge_length, 0.0, 1e9);
   check_range("roi-border", options.roi_border, -1e6, 1e6);
-  check_range("max-memory", options.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
+  check_range("max-memory", options.survey.memory.megabytes, std::uint64_t{0},
+              std::uint64_t{1} << 40);
 }
 
 void take_paths(const Raw& raw, Options& options) {
   const CommonOptions& common = options.parsed.common;
-  options.scene = io::scene_files(raw.scene, raw.input, common);
+  options.survey.files = io::scene_files(raw.scene, raw.input, common);
   options.cloud = in_working_folder(common, raw.cloud);
   options.mesh = in_working_folder(common, raw.mesh);
   options.output = io::mesh_file(
-      {options.scene.scene, output_in_working_folder(common, raw.output, "--output-file"),
+      {options.survey.files.scene, output_in_working_folder(common, raw.output, "--output-file"),
        raw.export_type, given(options.parsed, "export-type"), "_mesh", option_of});
   refuse_control_characters(options.output, "--output-file");
 }
@@ -172,6 +173,7 @@ void warn_of_no_effect(const Options& options) {
 
 Options parse_command_line(int argc, const char* const* argv) {
   Options options;
+  options.survey.memory = {0, "--max-memory", 60 * kMegabyte};
   Raw raw;
   ProgramOptions program{"ReconstructMesh",
                          "reconstructs a mesh from a dense cloud, in air and under water",

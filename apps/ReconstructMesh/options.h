@@ -6,22 +6,21 @@
 #include <string>
 
 #include "base/program.h"
-#include "io/openmvs/scene_with_cameras.h"
 #include "mesh/reconstruct.h"
+#include "survey/options.h"
 
 namespace axial::apps {
 
 struct Options {
   ParsedOptions parsed;
-  io::SceneFiles scene;
+  survey::Options survey;
   std::filesystem::path cloud;   // empty: <scene>.ply if it exists, otherwise the scene's points
   std::filesystem::path mesh;    // mesh to clean; empty: reconstruct a mesh
   std::filesystem::path output;  // .ply, .obj or .glb
   double roi_border = 0;
-  std::uint64_t max_memory = 0;  // [MB of 10^6 bytes]; 0: 70 % of the free memory
-  std::size_t tiles = 1;         // 1: the mesh is made in one piece
-  bool close_unseen = false;     // mark surface that no two cameras see instead of removing it
-  std::size_t tile = 0;          // from 1: make only this tile; 0: make and join all tiles
+  std::size_t tiles = 1;      // 1: the mesh is made in one piece
+  bool close_unseen = false;  // mark surface that no two cameras see instead of removing it
+  std::size_t tile = 0;       // from 1: make only this tile; 0: make and join all tiles
   mesh::ReconstructOptions reconstruct;
 };
 

@@ -59,12 +59,12 @@ void add(const mesh::ReconstructOptions& options, Fingerprint& print) {
 mesh::TileRun run_of(const Options& options) {
   Fingerprint print;
   print.add(version_line("ReconstructMesh"));
-  const fs::path& scene = options.scene.scene;
-  for (const fs::path& file : {scene, cloud_file(options), io::housing_file(options.scene),
+  const fs::path& scene = options.survey.files.scene;
+  for (const fs::path& file : {scene, cloud_file(options), io::housing_file(options.survey.files),
                                io::lenses_beside(scene), io::geo_offset_beside(scene)})
     add_state(file, print);
   add(options.reconstruct, print);
-  print.add(options.roi_border).add(static_cast<std::uint64_t>(options.scene.ports));
+  print.add(options.roi_border).add(static_cast<std::uint64_t>(options.survey.files.ports));
   const mesh::CleanOptions& clean = options.reconstruct.clean;
   mesh::TileRun run{options.tiles, tile_folder(options), print.hex()};
   // A mean edge is 3 to 4 pixels long. A piece that is not spurious must be seen as such from each
@@ -76,14 +76,14 @@ mesh::TileRun run_of(const Options& options) {
 // Errors in the cloud are named by its file, as those of a mesh in one piece.
 fs::path named_source(const Options& options) {
   const fs::path cloud = cloud_file(options);
-  return cloud.empty() ? options.scene.scene : cloud;
+  return cloud.empty() ? options.survey.files.scene : cloud;
 }
 
 }  // namespace
 
 fs::path cloud_file(const Options& options) {
   if (!options.cloud.empty()) return options.cloud;
-  const fs::path beside = io::cloud_beside(options.scene.scene);
+  const fs::path beside = io::cloud_beside(options.survey.files.scene);
   std::error_code error;
   return fs::exists(beside, error) ? beside : fs::path();
 }

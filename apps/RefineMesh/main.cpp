@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -9,13 +8,7 @@
 #include "base/output_lock.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "base/same_file.h"
-#include "belong/photograph_check.h"
 #include "belong/surface_check.h"
-#include "densify/fingerprint.h"
-#include "densify/image_store.h"
-#include "densify/memory_limit.h"
-#include "densify/project.h"
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
@@ -26,6 +19,8 @@
 #include "options.h"
 #include "refine/state_file.h"
 #include "scene/check_mesh.h"
+#include "survey/fingerprint.h"
+#include "survey/image_store.h"
 
 namespace axial::apps {
 namespace {
@@ -37,26 +32,18 @@ fs::path state_file(const Options& options) {
   return fs::path(options.output) += ".state";
 }
 
-void check_outputs(const Options& options, const densify::Project& project) {
-  const densify::Settings& scene = options.scene;
-  std::vector<fs::path> inputs =
-      io::files_of_scene({scene.input, scene.working_folder, scene.housing}, project.scene);
-  for (const fs::path& file : io::files_of_mesh(options.mesh)) inputs.push_back(file);
-  for (const densify::View& view : project.views) inputs.push_back(view.mask);
-  for (const fs::path& output : {options.output, state_file(options)}) {
-    require_not_an_input(output, inputs, "--output-file");
-    require_writable(output);
-  }
-}
-
-MemoryAllowance memory_of(const Options& options) {
-  return {options.scene.max_memory, "--max-memory", densify::kProgramBytes};
+survey::Survey open(const Options& options) {
+  survey::Survey survey = survey::open_scene(options.survey);
+  survey::find_photographs(survey);
+  survey.add_inputs(io::files_of_mesh(options.mesh));
+  survey.keep_inputs(std::vector{options.output, state_file(options)}, "--output-file");
+  return survey;
 }
 
 // Sets `has_marks` if faces of the mesh are marked as unseen. The result has no marks.
 Mesh read_mesh(const Options& options, const LocalFrame& frame, bool& has_marks) {
-  memory_of(options).require(io::bytes_to_read_mesh(options.mesh),
-                             "reading " + options.mesh.string());
+  options.survey.memory.require(io::bytes_to_read_mesh(options.mesh),
+                                "reading " + options.mesh.string());
   Mesh mesh = io::read_mesh_of_scene(frame, options.mesh);
   naming(options.mesh, [&] { check_mesh(mesh); });
   if (mesh.faces.empty()) fail("{}: the mesh has no faces", options.mesh.string());
@@ -67,15 +54,9 @@ Mesh read_mesh(const Options& options, const LocalFrame& frame, bool& has_marks)
   if (options.decimate == 1) return mesh;
   mesh::CleanOptions fewer = options.cleaning;
   fewer.decimate = options.decimate;
-  memory_of(options).require(mesh::bytes_to_clean(mesh.vertices.size()),
-                             "decimating " + options.mesh.string());
+  options.survey.memory.require(mesh::bytes_to_clean(mesh.vertices.size()),
+                                "decimating " + options.mesh.string());
   return naming(options.mesh, [&] { return mesh::clean(mesh, fewer); });
-}
-
-std::vector<refine::View> views_of(const densify::Project& project) {
-  std::vector<refine::View> views;
-  for (const densify::View& view : project.views) views.push_back({view.camera, view.pose});
-  return views;
 }
 
 // How the allowed memory is shared out.
@@ -84,19 +65,18 @@ struct Shares {
   std::uint64_t for_refinement = 1;  // [bytes]
 };
 
-Shares share_out_memory(const Options& options, const densify::Project& project) {
+Shares share_out_memory(const Options& options, const survey::Survey& survey) {
   std::uint64_t image = 0, decode = 0;
-  for (const densify::View& view : project.views) {
-    const std::uint64_t pixels = static_cast<std::uint64_t>(view.camera.width) *
-                                 static_cast<std::uint64_t>(view.camera.height);
-    image = std::max(image, densify::bytes_needed({pixels, view.masked(), false}));
-    decode = std::max(decode, densify::bytes_needed_to_load(io::bytes_needed(view.file), pixels));
+  for (const survey::View& view : survey.views) {
+    const std::uint64_t pixels = view.pixels();
+    image = std::max(image, survey::bytes_needed({pixels, view.masked(), false}));
+    decode = std::max(decode, survey::bytes_needed_to_load(io::bytes_needed(view.header), pixels));
   }
-  const std::uint64_t left = memory_of(options).left();
+  const std::uint64_t left = options.survey.memory.left();
   const std::uint64_t room = left - std::min(left, decode);
   Shares shares;
   shares.images = std::clamp<std::size_t>(room / 8 / std::max<std::uint64_t>(image, 1), 2,
-                                          std::max<std::size_t>(project.views.size(), 2));
+                                          std::max<std::size_t>(survey.views.size(), 2));
   const std::uint64_t images = shares.images * image;
   shares.for_refinement = room > images ? room - images : 1;
   return shares;
@@ -116,31 +96,29 @@ refine::State first_state(Mesh mesh, const Options& options, const std::string& 
   return state;
 }
 
-Mesh refine_mesh(Mesh mesh, const densify::Project& project, const Options& options,
+Mesh refine_mesh(Mesh mesh, const survey::Survey& survey, const Options& options,
                  refine::StateOfRun& of_run) {
-  const std::string fingerprint = refine::fingerprint(
-      mesh, options.refine, densify::fingerprint_of_views(project, options.scene));
+  const std::string fingerprint =
+      refine::fingerprint(mesh, options.refine, survey::fingerprint_of_views(survey));
   refine::State state = first_state(std::move(mesh), options, fingerprint);
   return_freed_memory();
-  const Shares shares = share_out_memory(options, project);
-  densify::ImageStore images(project, options.scene, shares.images);
+  const Shares shares = share_out_memory(options, survey);
+  survey::ImageStore images(survey, survey::Channels::grey, shares.images);
   images.check_all(1);
-  belong::PhotographCheck photographs(project.scene, options.scene.input);
   refine::Options settings = options.refine;
   settings.max_bytes = shares.for_refinement;
   settings.bytes_afterwards = mesh::bytes_to_clean(1);
   naming(options.mesh, [&] {
     refine::refine(
-        state, views_of(project),
+        state, survey::cameras_of<refine::View>(survey),
         [&](std::size_t view) {
           const auto image = images.get(view);
-          photographs.take(view, image->grey);
           return refine::Picture{image->grey, image->mask};
         },
         settings, console_progress("Refined"),
         [&](const refine::State& now) { of_run.write(now, fingerprint); });
   });
-  photographs.report();
+  survey.photograph_check->report();
   const refine::Report& report = state.report;
   log_info("{} vertices measured in {} pairs of images; median displacement {:.3g} m",
            report.measured, report.pairs, report.moved);
@@ -148,29 +126,26 @@ Mesh refine_mesh(Mesh mesh, const densify::Project& project, const Options& opti
 }
 
 // Points of the cloud beside the scene, of which the mesh was made. Empty if there is no cloud.
-std::vector<Eigen::Vector3f> points_of(const densify::Project& project, const fs::path& scene,
-                                       std::size_t faces) {
+std::vector<Eigen::Vector3f> points_of(const survey::Survey& survey, std::size_t faces) {
   constexpr std::size_t kPortion = 1 << 16;
-  const fs::path cloud = io::cloud_beside(scene);
+  const fs::path cloud = io::cloud_beside(survey.file());
   std::error_code error;
   if (!fs::is_regular_file(cloud, error) || io::ply_has_faces(cloud)) return {};
   return mesh::some_positions(
       [&](const io::CloudPortionSink& sink) {
-        io::read_cloud_of_scene_in_portions(project.frame, cloud, kPortion, sink);
+        io::read_cloud_of_scene_in_portions(survey.frame, cloud, kPortion, sink);
       },
       mesh::enough_points(faces));
 }
 
 // Removes or marks the surface that no two cameras see.
-Mesh without_unseen(Mesh mesh, const densify::Project& project, const fs::path& scene, bool keep) {
-  std::vector<geometry::PosedCamera> cameras;
-  for (const densify::View& view : project.views)
-    if (view.camera.width > 0) cameras.push_back({view.camera, view.pose});
+Mesh without_unseen(Mesh mesh, const survey::Survey& survey, bool keep) {
   mesh::UnseenOptions unseen;
   unseen.keep = keep;
-  const std::vector<Eigen::Vector3f> points = points_of(project, scene, mesh.faces.size());
+  const std::vector<Eigen::Vector3f> points = points_of(survey, mesh.faces.size());
   unseen.points = points;
-  return mesh::treat_unseen(std::move(mesh), cameras, unseen, console_progress("Looked"));
+  return mesh::treat_unseen(std::move(mesh), survey::cameras_of<geometry::PosedCamera>(survey),
+                            unseen, console_progress("Looked"));
 }
 
 void write(const fs::path& file, const Mesh& mesh, const LocalFrame& frame) {
@@ -186,20 +161,19 @@ int run(int argc, char** argv) {
   share_one_heap();
   const ThreadLimit threads(options.parsed.common.max_threads);
   const OutputLock lock = lock_output(options.output);
-  const densify::Project project = densify::load_scene_and_headers(options.scene);
-  check_outputs(options, project);
+  const survey::Survey survey = open(options);
   bool has_marks = false;
-  Mesh mesh = read_mesh(options, project.frame, has_marks);
-  belong::check_surface(project.scene, belong::shape_of(mesh), {options.mesh, options.scene.input});
-  points_of(project, options.scene.input, 1);  // a malformed cloud is an Error now, not after hours
+  Mesh mesh = read_mesh(options, survey.frame, has_marks);
+  belong::check_surface(survey.scene, belong::shape_of(mesh), {options.mesh, survey.file()});
+  points_of(survey, 1);  // a malformed cloud is an Error now, not after hours
   refine::StateOfRun state(state_file(options));
-  mesh = refine_mesh(std::move(mesh), project, options, state);
+  mesh = refine_mesh(std::move(mesh), survey, options, state);
   return_freed_memory();
   mesh = naming(options.mesh, [&] {
-    return without_unseen(mesh::clean(mesh, options.cleaning), project, options.scene.input,
+    return without_unseen(mesh::clean(mesh, options.cleaning), survey,
                           options.close_unseen || has_marks);
   });
-  state.writing([&] { write(options.output, mesh, project.frame); });
+  state.writing([&] { write(options.output, mesh, survey.frame); });
   state.remove();
   return 0;
 }

@@ -34,43 +34,35 @@ struct WithoutEffect {
   bool reduce_memory = true;
 };
 
-constexpr SettingName kOptions[] = {{"allow_missing", "--allow-missing"},
-                                    {"bit_depth", "--bit-depth"},
-                                    {"camera is flat_port", "--camera-model is flatport"},
-                                    {"housing", "--housing"},
-                                    {"ignore_mask_label", "--ignore-mask-label"},
-                                    {"mask_folder", "--mask-path"},
-                                    {"max_memory", "--max-memory"},
-                                    {"output", "--output-file"},
-                                    {"refractive", "--refractive"},
-                                    {"type", "--export-type"}};
+constexpr SettingName kOptions[] = {
+    {"max_memory", "--max-memory"}, {"output", "--output-file"}, {"type", "--export-type"}};
 
 std::string option_of(std::string_view setting) {
   return name_in(kOptions, setting);
 }
 
 void declare_io(OptionList& list, Raw& raw, Options& options) {
-  densify::Settings& scene = options.scene;
+  survey::Options& survey = options.survey;
   list.add("input-file,i", &raw.input, "scene with cameras (.mvs)")
       .add("mesh-file,m", &raw.mesh, "mesh to refine: PLY, OBJ, GLB or glTF (<input>.ply)")
       .add("output-file,o", &raw.output, "mesh to write (<input>_refine.ply)")
       .add_with_default("export-type", &raw.export_type,
                         "format of the mesh: ply, obj or glb; if it is not given, the extension of "
                         "--output-file decides")
-      .add_with_default("max-memory", &scene.max_memory,
+      .add_with_default("max-memory", &survey.memory.megabytes,
                         "largest memory to use [MB] (0: 70 % of the free memory)")
       .add("mask-path", &raw.mask_path,
            "folder with a mask for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
            "a.jpg, in the same subfolders as the images")
-      .add_with_default("ignore-mask-label", &scene.ignore_mask_label,
+      .add_with_default("ignore-mask-label", &survey.ignore_mask_label,
                         "mask value to leave out; below 0: no masks (default with --mask-path: 0)");
-  io::declare_bit_depth(list, scene.bit_depth);
+  io::declare_bit_depth(list, survey.bit_depth);
 }
 
 void declare_refinement(OptionList& list, Raw& raw, Options& options) {
-  list.add_with_default("resolution-level", &options.scene.resolution.level,
+  list.add_with_default("resolution-level", &options.survey.resolution.level,
                         "number of times that the images are halved first")
-      .add_with_default("min-resolution", &options.scene.resolution.min,
+      .add_with_default("min-resolution", &options.survey.resolution.min,
                         "images are not halved below this length of the longer side [px]")
       .add_with_default("max-views", &options.refine.max_views,
                         "number of views with which a view is compared")
@@ -120,8 +112,8 @@ void check_range(const std::string& name, T value, T low, T high) {
 }
 
 void check_values(const Options& options, const Raw& raw) {
-  check_range("resolution-level", options.scene.resolution.level, 0u, 16u);
-  check_range("min-resolution", options.scene.resolution.min, 1, 1 << 16);
+  check_range("resolution-level", options.survey.resolution.level, 0u, 16u);
+  check_range("min-resolution", options.survey.resolution.min, 1, 1 << 16);
   check_range("max-views", options.refine.max_views, 1u, 1000u);
   check_range("decimate", raw.decimate, 0.0, 1.0);
   check_range("max-face-area", options.refine.max_face_area, 0.0, 1e9);
@@ -129,41 +121,29 @@ void check_values(const Options& options, const Raw& raw) {
   check_range("scale-step", options.refine.scale_step, 0.1, 1.0);
   check_range("alternate-pair", raw.alternate_pair, 0u, 3u);
   check_range("regularity-weight", raw.regularity_weight, 0.0, 1e6);
-  check_range("max-memory", options.scene.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
-  io::check_bit_depth(options.scene.bit_depth, option_of("bit_depth"));
-}
-
-void take_cameras(const io::SceneFiles& files, densify::Settings& scene) {
-  scene.input = files.scene;
-  scene.working_folder = files.working_folder;
-  scene.housing = files.housing;
-  scene.allow_missing = files.allow_missing;
-  scene.refractive = files.ports == io::PortChoice::required;
-  if (files.ports == io::PortChoice::ignored) scene.camera = densify::CameraChoice::pinhole;
-  if (files.ports == io::PortChoice::flat) scene.camera = densify::CameraChoice::flat_port;
+  check_range("max-memory", options.survey.memory.megabytes, std::uint64_t{0},
+              std::uint64_t{1} << 40);
+  io::check_bit_depth(options.survey.bit_depth, "--bit-depth");
 }
 
 void take_paths(const Raw& raw, Options& options) {
   const CommonOptions& common = options.parsed.common;
-  densify::Settings& scene = options.scene;
-  take_cameras(io::scene_files(raw.cameras, raw.input, common), scene);
-  scene.mask_folder = in_working_folder(common, raw.mask_path);
-  if (!scene.mask_folder.empty() && !given(options.parsed, "ignore-mask-label"))
-    scene.ignore_mask_label = 0;
+  survey::Options& survey = options.survey;
+  survey.files = io::scene_files(raw.cameras, raw.input, common);
+  survey.mask_folder = in_working_folder(common, raw.mask_path);
+  if (!survey.mask_folder.empty() && !given(options.parsed, "ignore-mask-label"))
+    survey.ignore_mask_label = 0;
+  survey.compares_photographs = true;
   options.mesh = in_working_folder(common, raw.mesh);
-  if (options.mesh.empty()) options.mesh = io::cloud_beside(scene.input);
-  options.output =
-      io::mesh_file({scene.input, output_in_working_folder(common, raw.output, "--output-file"),
-                     raw.export_type, given(options.parsed, "export-type"), "_refine", option_of});
+  if (options.mesh.empty()) options.mesh = io::cloud_beside(survey.files.scene);
+  options.output = io::mesh_file(
+      {survey.files.scene, output_in_working_folder(common, raw.output, "--output-file"),
+       raw.export_type, given(options.parsed, "export-type"), "_refine", option_of});
   refuse_control_characters(options.output, "--output-file");
-  scene.output = std::filesystem::path(options.output).replace_extension(".mvs");
 }
 
 void convert(const Raw& raw, Options& options) {
   take_paths(raw, options);
-  options.scene.max_threads = options.parsed.common.max_threads;
-  options.scene.estimate_colors = 0;
-  options.scene.name_of = option_of;
   if (raw.decimate > 0) options.decimate = raw.decimate;
   options.cleaning.close_holes = raw.close_holes;
   options.cleaning.spurious = 0;
@@ -177,7 +157,8 @@ void convert(const Raw& raw, Options& options) {
 
 Options parse_command_line(int argc, const char* const* argv) {
   Options options;
-  options.scene.resolution = {0, 640, 1 << 16};
+  options.survey.memory.setting = "--max-memory";
+  options.survey.resolution = {0, 640, 1 << 16};
   Raw raw;
   WithoutEffect without_effect;
   ProgramOptions program{"RefineMesh",

@@ -6,15 +6,15 @@
 #include <string_view>
 
 #include "base/program.h"
-#include "densify/settings.h"
 #include "mesh/clean.h"
 #include "refine/refine.h"
+#include "survey/options.h"
 
 namespace axial::apps {
 
 struct Options {
   ParsedOptions parsed;
-  densify::Settings scene;       // settings of the scene, images, masks, cameras and memory
+  survey::Options survey;
   std::filesystem::path mesh;    // .ply
   std::filesystem::path output;  // .ply, .obj or .glb
   double decimate = 1;           // fraction of the faces that are kept before refining

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -12,31 +11,23 @@
 #include "base/output_lock.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "base/same_file.h"
 #include "belong/surface_check.h"
 #include "geometry/seen_part.h"
-#include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
-#include "io/openmvs/scene_files.h"
 #include "mesh/clean.h"
 #include "scene/check_mesh.h"
 #include "settings.h"
+#include "survey/photographs.h"
+#include "texture/photograph_source.h"
 
 namespace axial::apps {
 namespace {
 
 namespace fs = std::filesystem;
 
-// The memory of the program itself: code and libraries, stacks, small blocks.
-constexpr std::uint64_t kProgramBytes = 64 * kMegabyte;
-
-MemoryAllowance memory_of(const Settings& settings) {
-  return {settings.max_memory, "--max-memory", kProgramBytes};
-}
-
 Mesh read_mesh(const Settings& settings, const LocalFrame& frame) {
-  memory_of(settings).require(io::bytes_to_read_mesh(settings.mesh),
-                              "reading " + settings.mesh.string());
+  settings.survey.memory.require(io::bytes_to_read_mesh(settings.mesh),
+                                 "reading " + settings.mesh.string());
   Mesh mesh = io::read_mesh_of_scene(frame, settings.mesh);
   if (mesh.faces.empty()) fail("{}: the mesh has no faces", settings.mesh.string());
   log_info("{}: {} vertices, {} faces", settings.mesh.string(), mesh.vertices.size(),
@@ -48,8 +39,8 @@ Mesh read_mesh(const Settings& settings, const LocalFrame& frame) {
 // The mesh with fewer faces, simplified as by ReconstructMesh.
 Mesh simplified(const Settings& settings, Mesh mesh) {
   if (settings.decimate == 1) return mesh;
-  memory_of(settings).require(mesh::bytes_to_clean(mesh.vertices.size()),
-                              "decimating " + settings.mesh.string());
+  settings.survey.memory.require(mesh::bytes_to_clean(mesh.vertices.size()),
+                                 "decimating " + settings.mesh.string());
   mesh::CleanOptions fewer;
   fewer.decimate = settings.decimate;
   fewer.close_holes = settings.close_holes;
@@ -67,32 +58,12 @@ fs::path output_of(const Settings& settings, std::size_t tile) {
       .replace_extension(fmt::format(".tile{}-{}.mvs", tile + 1, settings.texture.tiles));
 }
 
-using Paths = std::vector<fs::path>;
-
-Paths inputs_of(const Settings& settings, const Scene& scene,
-                const texture::Photographs& photographs) {
-  Paths inputs = io::files_of_scene(settings.scene, scene);
-  for (const fs::path& file : photographs.files()) inputs.push_back(file);
-  for (const fs::path& file : io::files_of_mesh(settings.mesh)) inputs.push_back(file);
-  inputs.push_back(settings.photographs.views_file);
-  return inputs;
-}
-
-// Error if a file of a tile's mesh with `textures` textures is an input.
-void keep_inputs(const Settings& settings, const Paths& inputs, std::size_t tile,
+// Error if a file of a tile's mesh with `textures` textures is an input or cannot be written.
+void keep_inputs(const Settings& settings, const survey::Survey& survey, std::size_t tile,
                  std::size_t textures) {
   for (const io::TexturedFormat format : settings.formats)
-    require_no_inputs(io::textured_files(output_of(settings, tile), format, textures), inputs,
-                      "--output-file");
-}
-
-void check_outputs(const Settings& settings, const Paths& inputs) {
-  for (std::size_t tile = 0; tile < settings.texture.tiles; ++tile) {
-    keep_inputs(settings, inputs, tile, 1);
-    for (const io::TexturedFormat format : settings.formats)
-      for (const fs::path& file : io::textured_files(output_of(settings, tile), format, 1))
-        require_writable(file);
-  }
+    survey.keep_inputs(io::textured_files(output_of(settings, tile), format, textures),
+                       "--output-file");
 }
 
 // What the meshes of all tiles have.
@@ -125,10 +96,10 @@ void report(const Written& written, const texture::Report& facts) {
 }
 
 // The options of texture_mesh(), with what is left of the memory after the input was read.
-texture::Options with_memory(const Settings& settings, const texture::Photographs& photographs) {
+texture::Options with_memory(const Settings& settings, const survey::Photographs& photographs) {
   texture::Options options = settings.texture;
-  options.max_bytes = std::max<std::uint64_t>(memory_of(settings).left(), 1);  // 0: no limit
-  options.image_bytes = photographs.bytes_to_load();
+  options.max_bytes = std::max<std::uint64_t>(settings.survey.memory.left(), 1);  // 0: no limit
+  options.image_bytes = photographs.bytes_to_read_color();
   options.bytes_to_write = [&settings](const texture::ResultSize& size) {
     std::uint64_t bytes = 0;
     for (const io::TexturedFormat format : settings.formats)
@@ -139,38 +110,36 @@ texture::Options with_memory(const Settings& settings, const texture::Photograph
   return options;
 }
 
-void texture_and_write(const Settings& settings, const Paths& inputs, Mesh mesh,
-                       const texture::Photographs& photographs, const LocalFrame& frame,
+void texture_and_write(const Settings& settings, const survey::Survey& survey, Mesh mesh,
                        const Eigen::Matrix3d& axes) {
+  const survey::Photographs photographs(survey);
   texture::Options options = with_memory(settings, photographs);
   options.axes = axes;
   texture::Report facts;
   Written written;
   naming(settings.mesh, [&] {
     texture::texture_tiles(
-        std::move(mesh), photographs.views(),
-        [&](std::size_t view) { return already_named([&] { return photographs.load(view); }); },
+        std::move(mesh), survey::cameras_of<texture::View>(survey), texture::source_of(photographs),
         options,
         [&](std::size_t tile, const TexturedMesh& textured) {
           return_freed_memory();
-          if (tile == 0) already_named([&] { photographs.check(); });
-          keep_inputs(settings, inputs, tile, textured.textures.size());
+          if (tile == 0) already_named([&] { photographs.report(); });
+          keep_inputs(settings, survey, tile, textured.textures.size());
           written.textures += textured.textures.size();
           written.faces += textured.mesh.faces.size();
           if (tile + 1 == options.tiles) report(written, facts);
-          write(settings, frame, tile, textured);
+          write(settings, survey.frame, tile, textured);
         },
         &facts, [](const std::string& stage) { return console_progress(stage); });
   });
 }
 
 // Warns if the mesh is inside out: no photograph shows faces that are turned away from it.
-void check_sides(const Settings& settings, const texture::Photographs& photographs,
-                 const Mesh& mesh) {
-  memory_of(settings).require(geometry::bytes_of_sights(mesh), "what the cameras see");
+void check_sides(const Settings& settings, const survey::Survey& survey, const Mesh& mesh) {
+  settings.survey.memory.require(geometry::bytes_of_sights(mesh), "what the cameras see");
   naming(settings.mesh, [&] {
     geometry::warn_if_inside_out(
-        geometry::find_seen_part(mesh, geometry::posed_cameras(photographs.views()),
+        geometry::find_seen_part(mesh, survey::cameras_of<geometry::PosedCamera>(survey),
                                  {.strays = false}),
         settings.mesh);
   });
@@ -184,24 +153,21 @@ int run(int argc, char** argv) {
   const Settings& settings = options.settings;
   const ThreadLimit limit(options.parsed.common.max_threads);
   const OutputLock lock = lock_output(settings.output);
-  if (const auto counts = io::count_mvs(settings.scene.scene))
-    memory_of(settings).require(counts->reading_bytes(),
-                                "reading " + settings.scene.scene.string());
-  io::SceneWithCameras scene = io::read_scene_with_cameras(settings.scene);
-  Mesh mesh = read_mesh(settings, scene.frame);
+  survey::Survey survey = survey::open_scene(settings.survey);
+  Mesh mesh = read_mesh(settings, survey.frame);
   naming(settings.mesh, [&] { check_mesh(mesh); });
-  belong::check_surface(scene.scene, belong::shape_of(mesh), {settings.mesh, settings.scene.scene});
+  belong::check_surface(survey.scene, belong::shape_of(mesh), {settings.mesh, survey.file()});
   mesh = simplified(settings, std::move(mesh));
-  const texture::Photographs photographs(scene.scene, settings.scene.scene, settings.photographs);
-  const Paths inputs = inputs_of(settings, scene.scene, photographs);
-  check_outputs(settings, inputs);
-  const LocalFrame frame = scene.frame;
-  const Eigen::Matrix3d axes =
-      scene.scene.region ? scene.scene.region->rotation : Eigen::Matrix3d::Identity();
-  scene = {};
+  survey::find_photographs(survey);
+  survey.add_inputs(io::files_of_mesh(settings.mesh));
+  for (std::size_t tile = 0; tile < settings.texture.tiles; ++tile)
+    keep_inputs(settings, survey, tile, 1);
+  const auto& region = survey.scene.region;
+  const Eigen::Matrix3d axes = region ? region->rotation : Eigen::Matrix3d::Identity();
+  survey.scene = {};
   return_freed_memory();
-  check_sides(settings, photographs, mesh);
-  texture_and_write(settings, inputs, std::move(mesh), photographs, frame, axes);
+  check_sides(settings, survey, mesh);
+  texture_and_write(settings, survey, std::move(mesh), axes);
   warn_of_other_tiles(other_tiles(settings.output, settings.texture.tiles));
   return 0;
 }

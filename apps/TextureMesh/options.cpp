@@ -28,10 +28,7 @@ struct Raw {
   int packing_heuristic = 3;
 };
 
-constexpr SettingName kOptions[] = {{"max_memory", "--max-memory"},
-                                    {"mask_folder", "--mask-path"},
-                                    {"bit_depth", "--bit-depth"},
-                                    {"tiles", "--tiles"}};
+constexpr SettingName kOptions[] = {{"max_memory", "--max-memory"}, {"tiles", "--tiles"}};
 
 std::string option_of(std::string_view setting) {
   return name_in(kOptions, setting);
@@ -58,14 +55,14 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
                         "part of the faces to keep, from 0 to 1; the mesh is simplified first")
       .add_with_default("close-holes", &settings.close_holes,
                         "with --decimate below 1: close holes of at most this many edges (0: none)")
-      .add_with_default("max-memory", &settings.max_memory,
+      .add_with_default("max-memory", &settings.survey.memory.megabytes,
                         "largest memory to use [MB] (0: 70 % of the free memory)")
       .add_with_default("tiles", &settings.texture.tiles,
                         "make this number of meshes, <output>.tileI-N, one after the other, in "
                         "less memory; their colours agree where they meet")
       .add_with_default("resolution-level", &raw.resolution_level,
                         "how many times the images are halved")
-      .add_with_default("min-resolution", &settings.photographs.resolution.min,
+      .add_with_default("min-resolution", &settings.survey.resolution.min,
                         "the longest side is not halved below this [px]")
       .add_with_default(
           "ignore-mask-label", &raw.ignore_mask_label,
@@ -74,7 +71,7 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
       .add("mask-path", &raw.mask_path,
            "folder with a mask for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
            "a.jpg, in the same subfolders as the images");
-  io::declare_bit_depth(list, settings.photographs.bit_depth);
+  io::declare_bit_depth(list, settings.survey.bit_depth);
 }
 
 void declare_texturing(OptionList& list, Raw& raw, texture::Options& options) {
@@ -110,7 +107,7 @@ void check_values(const Raw& raw, const Settings& settings) {
   check_range("close-holes", settings.close_holes, std::size_t{0}, std::size_t{1000});
   check_range("tiles", settings.texture.tiles, std::size_t{1}, texture::kMostTiles);
   check_range("resolution-level", raw.resolution_level, 0u, 16u);
-  check_range("min-resolution", settings.photographs.resolution.min, 1, 1 << 16);
+  check_range("min-resolution", settings.survey.resolution.min, 1, 1 << 16);
   check_range("ignore-mask-label", raw.ignore_mask_label, -2, 65535);
   check_range("outlier-threshold", settings.texture.outlier_threshold, 0.0, 0.999);
   check_range("cost-smoothness-ratio", settings.texture.labels.cost_smoothness_ratio, 0.0, 100.0);
@@ -119,9 +116,10 @@ void check_values(const Raw& raw, const Settings& settings) {
     check_range("max-texture-size", settings.texture.packing.max_size, 16, 32768);
   check_range("texture-size-multiple", settings.texture.packing.multiple, 0,
               settings.texture.packing.max_size == 0 ? 32768 : settings.texture.packing.max_size);
-  check_range("max-memory", settings.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
+  check_range("max-memory", settings.survey.memory.megabytes, std::uint64_t{0},
+              std::uint64_t{1} << 40);
   check_range("empty-color", raw.empty_color, 0u, 0xFFFFFFu);
-  io::check_bit_depth(settings.photographs.bit_depth, "--bit-depth");
+  io::check_bit_depth(settings.survey.bit_depth, "--bit-depth");
 }
 
 std::vector<io::TexturedFormat> formats_of(const std::string& list) {
@@ -151,31 +149,29 @@ void take_output(const ParsedOptions& parsed, const Raw& raw, Settings& settings
   settings.formats = chosen_formats(parsed, raw);
   const bool is_ply =
       std::ranges::find(settings.formats, io::TexturedFormat::ply) != settings.formats.end();
-  settings.output = io::mesh_beside(settings.scene.scene, output, "_texture", is_ply) += ".mvs";
+  settings.output = io::mesh_beside(settings.survey.files.scene, output, "_texture", is_ply) +=
+      ".mvs";
   refuse_control_characters(settings.output, "--output-file");
 }
 
 void take_paths(const CommonOptions& common, const Raw& raw, Settings& settings) {
   const auto path = [&](const std::string& given) { return in_working_folder(common, given); };
-  settings.scene = io::scene_files(raw.scene, raw.input, common);
+  settings.survey.files = io::scene_files(raw.scene, raw.input, common);
   settings.mesh = path(raw.mesh);
-  if (settings.mesh.empty()) settings.mesh = io::cloud_beside(settings.scene.scene);
-  settings.photographs.views_file = path(raw.views_file);
-  settings.photographs.mask_folder = path(raw.mask_path);
+  if (settings.mesh.empty()) settings.mesh = io::cloud_beside(settings.survey.files.scene);
+  settings.survey.views_file = path(raw.views_file);
+  settings.survey.mask_folder = path(raw.mask_path);
 }
 
 void convert(const Raw& raw, Options& options) {
   Settings& settings = options.settings;
   take_paths(options.parsed.common, raw, settings);
   take_output(options.parsed, raw, settings);
-  settings.photographs.resolution.level = raw.resolution_level;
-  settings.texture.name_of = settings.photographs.name_of = option_of;
+  settings.survey.resolution.level = raw.resolution_level;
+  settings.texture.name_of = option_of;
   const bool masks_given = !raw.mask_path.empty() && !given(options.parsed, "ignore-mask-label");
-  const int label = masks_given ? 0 : raw.ignore_mask_label;
-  settings.photographs.masks = label >= 0    ? texture::MaskChoice::label
-                               : label == -1 ? texture::MaskChoice::black_border
-                                             : texture::MaskChoice::none;
-  settings.photographs.mask_label = label;
+  use_mask_label(settings.survey, masks_given ? 0 : raw.ignore_mask_label);
+  settings.survey.compares_photographs = true;
   for (unsigned k = 0; k < 3; ++k)
     settings.texture.empty_color[k] =
         static_cast<std::uint8_t>(raw.empty_color >> (8 * (2 - k)) & 255u);
@@ -193,6 +189,8 @@ void warn_of_no_effect(const Options& options) {
 
 Options parse_command_line(int argc, const char* const* argv) {
   Options options;
+  options.settings.survey.memory = {0, "--max-memory", 64 * kMegabyte};
+  options.settings.survey.resolution = {0, 640, 1 << 20};
   Raw raw;
   ProgramOptions program{"TextureMesh",
                          "gives a mesh textures from photographs, in air and under water",

@@ -8,21 +8,18 @@
 #include <vector>
 
 #include "base/program.h"
-#include "io/openmvs/scene_with_cameras.h"
 #include "io/textured/textured_mesh.h"
-#include "texture/photographs.h"
+#include "survey/options.h"
 #include "texture/texture_mesh.h"
 
 namespace axial::apps {
 
 struct Settings {
-  io::SceneFiles scene;
+  survey::Options survey;
   std::filesystem::path mesh, output;  // the extension of the output is .mvs, as in OpenMVS
   std::vector<io::TexturedFormat> formats;
-  texture::PhotographOptions photographs;
   double decimate = 1;           // fraction of the faces that are kept before texturing
   std::size_t close_holes = 30;  // with `decimate` below 1: CleanOptions::close_holes
-  std::uint64_t max_memory = 0;  // [MB]; 0: 70 % of the free memory
   texture::Options texture;
 };
 

@@ -34,7 +34,7 @@ void warn_of_outliers(const fs::path& file, const evaluate::SceneAlignment& alig
 }
 
 FrameMove align_to_scene(const Options& options, const io::SceneWithCameras& scene) {
-  Scene reference = io::read_mvs(options.align, options.files.working_folder);
+  Scene reference = io::read_mvs(options.align, options.survey.files.working_folder);
   const LocalFrame frame = io::enter_local_frame(reference, options.align);
   return naming(options.align, [&] {
     const evaluate::ImagePairs images = evaluate::pair_images(scene.scene, reference);
@@ -128,7 +128,7 @@ void check_scale(const Options& options, const io::SceneWithCameras& scene,
     fail(
         "{}: the transformation has the scale {:.9g}, but the lengths of port '{}' are known in "
         "metres: use --rigid to align without a scale, or --scale-ports to scale the port, too",
-        options.files.scene.string(), similarity.scale, image.port_name);
+        options.survey.files.scene.string(), similarity.scale, image.port_name);
   }
 }
 

@@ -33,6 +33,7 @@
 #include "measure_volume.h"
 #include "moved_mesh.h"
 #include "options.h"
+#include "survey/survey.h"
 #include "texture_copies.h"
 
 namespace axial::apps {
@@ -111,9 +112,9 @@ std::vector<NamedOutput> outputs_of(const Options& options, const Files& files) 
   return outputs;
 }
 
-// Called before the work. Makes the folders of copied textures.
+// Called before the scene is read. Makes the folders of copied textures.
 void check_outputs(const Options& options, const Files& files) {
-  std::vector<fs::path> inputs = io::files_of_scene(options.files);
+  std::vector<fs::path> inputs = io::files_of_scene(options.survey.files);
   inputs.insert(inputs.end(),
                 {options.cloud, options.mesh, options.align, options.transform, options.positions});
   for (const fs::path& file : io::files_of_mesh(options.mesh)) inputs.push_back(file);
@@ -134,10 +135,9 @@ void check_outputs(const Options& options, const Files& files) {
 }
 
 // Error if an output is a photograph, a mask or a depth map of the scene.
-void keep_images(const Options& options, const Files& files, const Scene& scene) {
-  const std::vector<fs::path> inputs = io::files_of_scene(options.files, scene);
+void keep_images(const Options& options, const Files& files, const survey::Survey& survey) {
   for (const NamedOutput& output : outputs_of(options, files))
-    require_not_an_input(output.path, inputs, output.setting);
+    require_not_an_input(output.path, survey.inputs, output.setting);
 }
 
 // Warns of a mesh or a cloud that does not belong to the scene, which is still unmoved. The
@@ -157,7 +157,7 @@ void warn_of_foreign_points(const Options& options, const io::SceneWithCameras& 
   } catch (const Error&) {
     return;
   }
-  belong::check_surface(scene.scene, {points}, {ply, options.files.scene, true});
+  belong::check_surface(scene.scene, {points}, {ply, options.survey.files.scene, true});
 }
 
 void apply(const Options& options, const FrameMove& move, io::SceneWithCameras& scene) {
@@ -170,7 +170,7 @@ void apply(const Options& options, const FrameMove& move, io::SceneWithCameras& 
 
 // Called before the first file is written.
 void require_writable_scene(const Options& options, const Scene& scene) {
-  const std::string file = options.files.scene.string();
+  const std::string file = options.survey.files.scene.string();
   if (std::ranges::none_of(scene.images, &SceneImage::calibrated))
     fail("{}: no image is calibrated", file);
   for (std::size_t i = 0; i < scene.points.size(); ++i)
@@ -214,7 +214,7 @@ std::vector<Output> all_outputs(const Options& options, const Files& files, cons
         {samples_file(options), [&](const fs::path& file) { write_samples(options, move, file); }});
   if (options.writes_scene())
     outputs.push_back({options.output, [&](const fs::path& file) {
-                         io::write_mvs(file, scene, options.files.working_folder);
+                         io::write_mvs(file, scene, options.survey.files.working_folder);
                        }});
   return outputs;
 }
@@ -248,7 +248,7 @@ void write_all(const Options& options, const Files& files, const FrameMove& move
       if (outputs[k].write) outputs[k].write(temporaries[k]);
     if (!options.writes_scene()) return;
     write_small_images(images, folder_of_small_images(options));
-    io::write_cameras_beside(options.output, scene, lenses, options.files);
+    io::write_cameras_beside(options.output, scene, lenses, options.survey.files);
   });
   tell_outputs(options, files, images, scene.scene);
 }
@@ -280,19 +280,19 @@ int run(int argc, char** argv) {
   const bool writes = !outputs_of(options, files).empty();
   if (writes) lock.emplace(options.output, LockUse::alone, ParentFolder::made);
   check_outputs(options, files);
-  io::SceneWithCameras scene = io::read_scene_with_cameras(options.files);
-  keep_images(options, files, scene.scene);
-  for (const MovedPly& ply : files.plys) warn_of_foreign_points(options, scene, ply.input);
-  const FrameMove move = find_move(options, scene);
-  check_scale(options, scene, move.similarity);
-  apply(options, move, scene);
-  if (options.writes_scene()) require_writable_scene(options, scene.scene);
-  if (options.compute_volume) measure_volume(options, scene.scene, move);
+  survey::Survey survey = survey::open_scene(options.survey);
+  keep_images(options, files, survey);
+  for (const MovedPly& ply : files.plys) warn_of_foreign_points(options, survey, ply.input);
+  const FrameMove move = find_move(options, survey);
+  check_scale(options, survey, move.similarity);
+  apply(options, move, survey);
+  if (options.writes_scene()) require_writable_scene(options, survey.scene);
+  if (options.compute_volume) measure_volume(options, survey.scene, move);
   std::vector<SmallImage> images;
   if (options.max_resolution > 0)
     images =
-        find_large_images(options.max_resolution, folder_of_small_images(options), scene.scene);
-  if (writes) write_all(options, files, move, images, scene);
+        find_large_images(options.max_resolution, folder_of_small_images(options), survey.scene);
+  if (writes) write_all(options, files, move, images, survey);
   warn_of_older_files(options, files);
   return 0;
 }

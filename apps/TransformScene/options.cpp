@@ -84,7 +84,8 @@ void set_paths(const Texts& texts, Options& options) {
   const auto path = [&](const std::string& text) {
     return in_working_folder(options.parsed.common, text);
   };
-  options.files = io::scene_files(texts.cameras, texts.input, options.parsed.common);
+  options.survey.has_memory_limit = false;
+  options.survey.files = io::scene_files(texts.cameras, texts.input, options.parsed.common);
   options.cloud = path(texts.cloud);
   options.mesh = path(texts.mesh);
   options.align = path(texts.align);
@@ -92,10 +93,11 @@ void set_paths(const Texts& texts, Options& options) {
   options.positions = path(texts.positions);
   const CommonOptions& common = options.parsed.common;
   options.transform_out = output_in_working_folder(common, texts.transform_out, "--transform-out");
-  options.output = with_extension(
-      output_or(common, texts.output, without_known_extension(options.files.scene) += "_transform",
-                "--output-file"),
-      ".mvs");
+  options.output =
+      with_extension(output_or(common, texts.output,
+                               without_known_extension(options.survey.files.scene) += "_transform",
+                               "--output-file"),
+                     ".mvs");
 }
 
 void check_mesh_outputs(Options& options) {

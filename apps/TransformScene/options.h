@@ -5,13 +5,13 @@
 #include <string>
 
 #include "base/program.h"
-#include "io/openmvs/scene_with_cameras.h"
+#include "survey/options.h"
 
 namespace axial::apps {
 
 struct Options {
   ParsedOptions parsed;
-  io::SceneFiles files;  // the scene and its housing
+  survey::Options survey;
   std::filesystem::path cloud, mesh, output;
   // The three ways to move the scene. At most one of these files is given.
   std::filesystem::path align, transform, positions;

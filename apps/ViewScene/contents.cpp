@@ -14,14 +14,11 @@
 #include "base/naming.h"
 #include "base/parallel.h"
 #include "base/version.h"
-#include "belong/photograph_check.h"
 #include "belong/surface_check.h"
 #include "depth_maps.h"
 #include "folder.h"
 #include "geometry/seen_part.h"
-#include "io/images/bit_depth.h"
 #include "io/images/image.h"
-#include "io/images/photograph_size.h"
 #include "io/openmvs/mesh_of_scene.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
@@ -30,6 +27,7 @@
 #include "run.h"
 #include "scene/check_mesh.h"
 #include "scene/resolution.h"
+#include "survey/photographs.h"
 #include "truth.h"
 #include "view/camera_data.h"
 #include "view/cloud_data.h"
@@ -59,15 +57,15 @@ void read_cloud(const Options& options, Contents& contents) {
   view::CloudSample sample(options.max_points);
   constexpr std::size_t kPortion = 1 << 18;
   io::read_cloud_of_scene_in_portions(
-      contents.scene.frame, options.cloud, kPortion,
+      contents.survey.frame, options.cloud, kPortion,
       [&](const PointCloud& portion, std::size_t all) { sample.add(portion, all); });
   contents.all_points = sample.added();
   contents.cloud = sample.take();
   if (contents.cloud.size() == 0) fail("{}: the cloud has no points", options.cloud.string());
   log_info("{}: {} of {} points are shown", options.cloud.string(), contents.cloud.size(),
            contents.all_points);
-  belong::check_surface(contents.scene.scene, belong::shape_of(contents.cloud),
-                        {options.cloud, options.scene.scene});
+  belong::check_surface(contents.survey.scene, belong::shape_of(contents.cloud),
+                        {options.cloud, options.survey.files.scene});
 }
 
 const Mesh& mesh_of(const Contents& contents) {
@@ -89,7 +87,7 @@ PointCloud corners_of_mesh(const Contents& contents) {
 
 void read_mesh(const Options& options, Contents& contents) {
   if (options.mesh.empty()) return;
-  const LocalFrame& frame = contents.scene.frame;
+  const LocalFrame& frame = contents.survey.frame;
   std::size_t faces = 0;
   if (io::is_textured_mesh(options.mesh)) {
     contents.textured = io::read_textured_mesh_of_scene(frame, options.mesh);
@@ -102,15 +100,15 @@ void read_mesh(const Options& options, Contents& contents) {
   log_info("{}: {} faces", options.mesh.string(), faces);
   const Mesh& mesh = mesh_of(contents);
   naming(options.mesh, [&] { check_mesh(mesh); });
-  belong::check_surface(contents.scene.scene, belong::shape_of(mesh),
-                        {options.mesh, options.scene.scene});
+  belong::check_surface(contents.survey.scene, belong::shape_of(mesh),
+                        {options.mesh, options.survey.files.scene});
 }
 
 // Warns if the mesh is inside out.
 void check_sides(const Options& options, const Contents& contents) {
   if (!contents.mesh && !contents.textured) return;
   std::vector<geometry::PosedCamera> cameras;
-  for (const SceneImage& image : contents.scene.scene.images)
+  for (const SceneImage& image : contents.survey.scene.images)
     if (image.calibrated) cameras.push_back({image.camera, image.pose});
   const Mesh& mesh = mesh_of(contents);
   naming(options.mesh, [&] {
@@ -131,7 +129,7 @@ std::vector<std::uint32_t> camera_numbers(const Scene& scene) {
 // A few points of the cloud that each image sees.
 std::vector<std::vector<Eigen::Vector3f>> points_to_check(const Contents& contents) {
   const PointCloud& cloud = contents.cloud;
-  std::vector<std::vector<Eigen::Vector3f>> points(contents.scene.scene.images.size());
+  std::vector<std::vector<Eigen::Vector3f>> points(contents.survey.scene.images.size());
   if (cloud.view_begin.empty()) return points;
   for (std::size_t i = 0; i < cloud.size(); ++i)
     for (const std::uint32_t image : cloud.views_of(i))
@@ -142,7 +140,7 @@ std::vector<std::vector<Eigen::Vector3f>> points_to_check(const Contents& conten
 
 Json write_cloud(const Contents& contents, const Options& options, const fs::path& staging) {
   if (options.cloud.empty()) return Json::array();
-  const std::vector<std::uint32_t> cameras = camera_numbers(contents.scene.scene);
+  const std::vector<std::uint32_t> cameras = camera_numbers(contents.survey.scene);
   const view::PointErrors errors{contents.distances, view::error_step(contents.distances)};
   DataFiles files(staging, "cloud");
   Json chunks = Json::array();
@@ -192,46 +190,21 @@ Json write_mesh(const Contents& contents, const Options& options, const fs::path
   return mesh;
 }
 
-// Writes the photograph of the image `index` to `file`, and gives it to `check`. Returns the size
-// of the reduced photograph.
-cv::Size write_photograph(const Scene& scene, std::size_t index, int bits, int longest,
-                          const fs::path& file, belong::PhotographCheck& check) {
-  const SceneImage& image = scene.images[index];
-  const cv::Mat3b pixels = io::in_8_bits(io::read_photograph(image.path).pixels, bits);
-  check.take(index, pixels);
-  const cv::Size size = reduced(pixels.size(), longest);
-  io::write_jpeg(file, resized_image(pixels, size), kQuality);
-  return size;
-}
-
-Json write_cameras(const Contents& contents, const Options& options, const fs::path& staging) {
-  const Scene& scene = contents.scene.scene;
-  std::vector<std::size_t> images;
-  std::vector<fs::path> files;
-  std::vector<io::ImageHeader> headers;
-  std::vector<io::PhotographSize> sizes;
+Json write_cameras(const Contents& contents, const fs::path& staging) {
+  const survey::Survey& survey = contents.survey;
   const auto checks = points_to_check(contents);
   Json cameras = Json::array();
-  for (std::size_t i = 0; i < scene.images.size(); ++i) {
-    const SceneImage& image = scene.images[i];
-    if (!image.calibrated) continue;
-    images.push_back(i);
-    files.emplace_back(image.path);
-    headers.push_back(io::read_image_header(image.path));
-    sizes.push_back({image.path, headers.back().size, {image.camera.width, image.camera.height}});
-    cameras.push_back(view::camera_data(image, checks[i]));
-  }
-  io::check_photograph_sizes(sizes);
-  belong::PhotographCheck photographs(scene, options.scene.scene);
-  const int bits = io::common_bit_depth(files, headers, options.bit_depth, "--bit-depth");
-  for_each_in_flight(images.size(), thread_count(), [&](std::size_t i) {
-    const std::string name = fmt::format("photographs/{:05}.jpg", i);
-    const cv::Size size = write_photograph(scene, images[i], bits, options.photograph_size,
-                                           staging / name, photographs);
-    Json& camera = cameras[i];
-    camera["name"] = files[i].filename().string();
+  for (const survey::View& view : survey.views)
+    cameras.push_back(view::camera_data(survey.scene.images[view.image], checks[view.image]));
+  const survey::Photographs photographs(survey);
+  for_each_in_flight(survey.views.size(), thread_count(), [&](std::size_t v) {
+    const std::string name = fmt::format("photographs/{:05}.jpg", v);
+    const cv::Mat3b pixels = photographs.read(v, survey::Channels::color).color;
+    io::write_jpeg(staging / name, pixels, kQuality);
+    Json& camera = cameras[v];
+    camera["name"] = survey.views[v].file.filename().string();
     camera["photo"] = name;
-    camera["photo_size"] = {size.width, size.height};
+    camera["photo_size"] = {pixels.cols, pixels.rows};
   });
   photographs.report();
   return cameras;
@@ -242,12 +215,12 @@ void add_survey(const Contents& contents, const Options& options, const fs::path
                 Json& data) {
   if (!options.run.empty()) data["run"] = run_report(options.run);
   if (Json maps = write_maps(options.maps, staging); !maps.is_null()) data["map"] = std::move(maps);
-  Json depths = write_depth_maps(contents.scene.scene, options.depth_maps, staging);
+  Json depths = write_depth_maps(contents.survey.scene, options.depth_maps, staging);
   if (!depths.empty()) data["depth_maps"] = std::move(depths);
 }
 
 Json files_of(const Options& options) {
-  Json files{{"scene", options.scene.scene.filename().string()}};
+  Json files{{"scene", options.survey.files.scene.filename().string()}};
   if (!options.cloud.empty()) files["cloud"] = options.cloud.filename().string();
   if (!options.mesh.empty()) files["mesh"] = options.mesh.filename().string();
   return files;
@@ -257,21 +230,20 @@ Json files_of(const Options& options) {
 
 Contents read_contents(const Options& options) {
   Contents contents;
-  contents.scene = io::read_scene_with_cameras(options.scene);
-  if (std::ranges::none_of(contents.scene.scene.images, &SceneImage::calibrated))
-    fail("{}: has no calibrated image", options.scene.scene.string());
+  contents.survey = survey::open_scene(options.survey);
+  survey::find_photographs(contents.survey);
   if (!options.cloud.empty()) read_cloud(options, contents);
   read_mesh(options, contents);
   check_sides(options, contents);
   if (!options.truth.empty())
-    contents.distances = distances_to_truth(contents.scene.frame, contents.cloud, options.truth);
+    contents.distances = distances_to_truth(contents.survey.frame, contents.cloud, options.truth);
   return contents;
 }
 
 void write_contents(const Contents& contents, const Options& options, const fs::path& staging) {
   make_folder(staging / "data");
   make_folder(staging / "photographs");
-  const io::SceneWithCameras& scene = contents.scene;
+  const survey::Survey& scene = contents.survey;
   const view::FirstView first =
       options.cloud.empty()
           ? view::first_view(corners_of_mesh(contents), scene.scene.images, !scene.frame.is_world())
@@ -286,7 +258,7 @@ void write_contents(const Contents& contents, const Options& options, const fs::
   add_survey(contents, options, staging, data);
   if (!options.sfm_model.empty()) data["residuals"] = residual_data(scene, options.sfm_model);
   if (!contents.distances.empty()) data["truth"] = options.truth.filename().string();
-  data["cameras"] = write_cameras(contents, options, staging);
+  data["cameras"] = write_cameras(contents, staging);
   data["chunks"] = write_cloud(contents, options, staging);
   if (contents.mesh || contents.textured) data["mesh"] = write_mesh(contents, options, staging);
   write_scene_file(staging, data);

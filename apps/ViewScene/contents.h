@@ -6,17 +6,17 @@
 #include <optional>
 #include <vector>
 
-#include "io/openmvs/scene_with_cameras.h"
 #include "options.h"
 #include "scene/mesh.h"
 #include "scene/point_cloud.h"
 #include "scene/textured_mesh.h"
+#include "survey/survey.h"
 
 namespace axial::apps {
 
 // What the viewer shows, in the frame of the scene.
 struct Contents {
-  io::SceneWithCameras scene;
+  survey::Survey survey;
   PointCloud cloud;              // at most about Options::max_points points
   std::size_t all_points = 0;    // of the file of the cloud
   std::vector<float> distances;  // of the points to the true mesh [m]; empty: no true mesh

@@ -41,7 +41,7 @@ void take_survey(const Raw& raw, const CommonOptions& common, Options& options) 
   options.depth_maps.is_given = !raw.depth_maps.empty();
   options.depth_maps.folder = options.depth_maps.is_given
                                   ? in_working_folder(common, raw.depth_maps)
-                                  : options.scene.scene.parent_path();
+                                  : options.survey.files.scene.parent_path();
   options.run = in_working_folder(common, raw.run);
 }
 
@@ -57,19 +57,19 @@ void declare(OptionList& list, Raw& raw, Options& options) {
            "true mesh in the scene's coordinates: the page shows the cloud's distances to it")
       .add_with_default("max-points", &options.max_points,
                         "largest number of points; a larger cloud is thinned out randomly")
-      .add_with_default("photograph-size", &options.photograph_size,
+      .add_with_default("photograph-size", &options.survey.resolution.max,
                         "longest side of the photographs in the folder [px]")
       .add_with_default("texture-size", &options.texture_size,
                         "longest side of the textures in the folder [px]");
   declare_survey(list, raw, options);
-  io::declare_bit_depth(list, options.bit_depth);
+  io::declare_bit_depth(list, options.survey.bit_depth);
   io::declare_scene_options(list, raw.scene);
 }
 
 // The cloud that is given, or the one beside the scene. Without it, a mesh can be shown alone.
 fs::path cloud_to_show(const Raw& raw, const Options& options) {
   if (!raw.cloud.empty()) return in_working_folder(options.parsed.common, raw.cloud);
-  const fs::path beside = io::cloud_beside(options.scene.scene);
+  const fs::path beside = io::cloud_beside(options.survey.files.scene);
   std::error_code error;
   const bool alone = !options.mesh.empty() && !fs::exists(beside, error);
   return alone ? fs::path() : beside;
@@ -85,6 +85,7 @@ void check_range(const char* name, T value, T low, T high) {
 
 Options parse_command_line(int argc, const char* const* argv) {
   Options options;
+  options.survey.resolution = {0, 1, 1024};
   Raw raw;
   ProgramOptions program{
       "ViewScene", "writes a folder for the browser, to look at a reconstruction and measure on it",
@@ -96,13 +97,15 @@ Options parse_command_line(int argc, const char* const* argv) {
   const CommonOptions& common = options.parsed.common;
   if (raw.report.empty()) fail("--report: give the folder to write");
   check_range("max-points", options.max_points, std::uint64_t{1}, std::uint64_t{1} << 30);
-  check_range("photograph-size", options.photograph_size, 16, 1 << 16);
+  check_range("photograph-size", options.survey.resolution.max, 16, 1 << 16);
   check_range("texture-size", options.texture_size, 16, 1 << 15);
   check_range("map-size", options.maps.longest_side, 16, 1 << 14);
   if (options.depth_maps.longest_side != 0)
     check_range("depth-map-size", options.depth_maps.longest_side, 16, 1 << 14);
-  io::check_bit_depth(options.bit_depth, "--bit-depth");
-  options.scene = io::scene_files(raw.scene, raw.input, common);
+  io::check_bit_depth(options.survey.bit_depth, "--bit-depth");
+  options.survey.has_memory_limit = options.survey.has_masks = false;
+  options.survey.compares_photographs = true;
+  options.survey.files = io::scene_files(raw.scene, raw.input, common);
   options.mesh = in_working_folder(common, raw.mesh);
   options.cloud = cloud_to_show(raw, options);
   if (options.cloud.empty() && !raw.truth.empty())

@@ -6,14 +6,14 @@
 
 #include "base/program.h"
 #include "depth_maps.h"
-#include "io/openmvs/scene_with_cameras.h"
 #include "maps.h"
+#include "survey/options.h"
 
 namespace axial::apps {
 
 struct Options {
   ParsedOptions parsed;
-  io::SceneFiles scene;
+  survey::Options survey;
   std::filesystem::path cloud, mesh;  // empty: none
   std::filesystem::path report;       // the folder to write
   MapOptions maps;
@@ -22,9 +22,7 @@ struct Options {
   std::filesystem::path sfm_model;  // folder of a COLMAP model, for residuals; empty: none
   std::filesystem::path truth;      // true mesh, for distances of the cloud; empty: none
   std::uint64_t max_points = 10'000'000;
-  int photograph_size = 1024;  // longest side of the reduced photographs [px]
-  int texture_size = 4096;     // longest side of the reduced textures [px]
-  int bit_depth = 0;
+  int texture_size = 4096;  // longest side of the reduced textures [px]
 };
 
 // Parses and checks the command line. Error for an unknown option and for a value out of range.

@@ -26,8 +26,8 @@ bool Coverage::contains(const Eigen::Vector2d& pixel) const {
   return at.x >= 0 && at.y >= 0 && at.x < covered.cols && at.y < covered.rows && covered(at) != 0;
 }
 
-Coverage coverage_of(const Scene& scene, Cameras& cameras, std::uint32_t image, const Shape& shape,
-                     std::span<const std::size_t> parts) {
+Coverage coverage_of(const Scene& scene, SceneCameras& cameras, std::uint32_t image,
+                     const Shape& shape, std::span<const std::size_t> parts) {
   std::vector<Eigen::Vector2d> pixels;
   for (const std::size_t part : parts)
     if (const auto pixel = cameras.pixel(image, shape.middle(part))) pixels.push_back(*pixel);

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "belong/shape.h"
-#include "belong/sparse_places.h"
+#include "scene/sparse_places.h"
 
 namespace axial::belong {
 
@@ -26,7 +26,7 @@ struct Coverage {
 // the shape. Parts that others hide count, too. The cells are so large that they contain 12 sampled
 // parts on average, and at least 1/32 of the longer side of the image. With fewer than 100 sampled
 // parts in the image, no cell is covered. Precondition: the image is calibrated.
-Coverage coverage_of(const Scene& scene, Cameras& cameras, std::uint32_t image, const Shape& shape,
-                     std::span<const std::size_t> parts);
+Coverage coverage_of(const Scene& scene, SceneCameras& cameras, std::uint32_t image,
+                     const Shape& shape, std::span<const std::size_t> parts);
 
 }  // namespace axial::belong

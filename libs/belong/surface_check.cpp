@@ -33,7 +33,7 @@ std::vector<std::uint32_t> calibrated_images(const Scene& scene) {
 
 // True if one of `count` parts appears in one of the images.
 bool appears(const Shape& shape, std::size_t count, std::span<const std::uint32_t> images,
-             Cameras& cameras) {
+             SceneCameras& cameras) {
   for (const std::size_t part : spread_indices(shape.parts(), count))
     for (const std::uint32_t image : images)
       if (cameras.pixel(image, shape.middle(part))) return true;
@@ -47,7 +47,7 @@ struct Sight {
 
 // A few rays of the images.
 std::vector<Sight> sights_of(std::span<const std::uint32_t> images, const Scene& scene,
-                             Cameras& cameras) {
+                             SceneCameras& cameras) {
   constexpr int kColumns = 12, kRows = 9;
   std::vector<Sight> sights;
   for (const std::uint32_t image : images) {
@@ -73,7 +73,7 @@ bool may_meet(const Sight& sight, const Eigen::Vector3d& centre, double radius) 
 
 // True if one of a few rays of the images meets the mesh.
 bool is_met(const Shape& shape, std::span<const std::uint32_t> images, const Scene& scene,
-            Cameras& cameras) {
+            SceneCameras& cameras) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3f& vertex : shape.vertices) box.extend(vertex.cast<double>());
   std::vector<Sight> sights = sights_of(images, scene, cameras);
@@ -91,7 +91,7 @@ bool is_met(const Shape& shape, std::span<const std::uint32_t> images, const Sce
 
 // True if a camera looks at a part of the shape, which others may hide.
 bool is_in_view(const Scene& scene, const Shape& shape) {
-  Cameras cameras(scene);
+  SceneCameras cameras(scene);
   const std::vector<std::uint32_t> all = calibrated_images(scene);
   std::vector<std::uint32_t> images;
   for (const std::size_t i : spread_indices(all.size(), kImagesToSee)) images.push_back(all[i]);

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "belong/shape.h"
-#include "belong/sparse_places.h"
 #include "scene/scene.h"
+#include "scene/sparse_places.h"
 
 namespace axial::belong {
 
@@ -58,7 +58,7 @@ class SurfaceMeasure {
   double footprint(const SparsePlace& place);
 
   const Scene& scene_;
-  Cameras cameras_;
+  SceneCameras cameras_;
   std::vector<SparsePlace> places_;
   double reach_ = 0;  // farther from the places, nothing is searched for
 };

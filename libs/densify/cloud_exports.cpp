@@ -59,7 +59,7 @@ WrittenCloud write(const Project& project, const Settings& settings, const std::
   io::write_cloud_ply(ply, cloud_of(project.scene), true, placement_of(project, settings));
   if (with_scene) {
     write_cameras_beside_output(project, of_scene);
-    io::write_mvs(of_scene.output, project.scene, settings.working_folder);
+    io::write_mvs(of_scene.output, project.scene, settings.survey.files.working_folder);
   }
   return told(ply, project.scene);
 }
@@ -131,7 +131,8 @@ void keep_points(Scene& scene, const std::function<bool(std::size_t point)>& kep
 }
 
 WrittenCloud export_cloud(Project project, const Settings& settings) {
-  if (project.scene.points.empty()) fail("{}: has no points to export", settings.input.string());
+  if (project.scene.points.empty())
+    fail("{}: has no points to export", settings.survey.files.scene.string());
   if (settings.filter_point_cloud < 0) return export_filtered(project, settings);
   if (settings.export_number_views != 0) return export_number_of_views(project, settings);
   return export_scales(project, settings);

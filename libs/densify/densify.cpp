@@ -2,6 +2,7 @@
 #include "densify/densify.h"
 
 #include <algorithm>
+#include <set>
 
 #include "base/log.h"
 #include "base/memory.h"
@@ -12,7 +13,6 @@
 #include "densify/depth_stage.h"
 #include "densify/existing_maps.h"
 #include "densify/fusion_stage.h"
-#include "densify/image_store.h"
 #include "densify/memory_plan.h"
 #include "densify/neighbour_lists.h"
 #include "densify/outputs.h"
@@ -24,6 +24,7 @@
 #include "densify/work_plan.h"
 #include "io/openmvs/mvs.h"
 #include "io/ply/ply.h"
+#include "survey/image_store.h"
 
 namespace axial::densify {
 namespace fs = std::filesystem;
@@ -67,7 +68,7 @@ LockUse use_of_maps(const Project& project, const Settings& settings,
 
 // The name by which runs lock the depth maps of a folder.
 fs::path maps_in(const Settings& settings) {
-  return settings.working_folder / "depth_maps";
+  return settings.survey.files.working_folder / "depth_maps";
 }
 
 // Runs for a part, a stage or a list do not write the output itself.
@@ -84,14 +85,22 @@ std::size_t write_sparse_cloud(const Project& project, const Settings& settings,
   return project.scene.points.size();
 }
 
+// The images of the part that this run makes, and their sources.
+std::vector<std::size_t> images_of_part(const Project& project) {
+  std::set<std::size_t> images(project.part.begin(), project.part.end());
+  for (const std::size_t image : project.part)
+    for (const ViewScore& source : project.sources[image]) images.insert(source.image);
+  return {images.begin(), images.end()};
+}
+
 // Makes or uses the depth maps of the run's images.
 void prepare_maps(const Project& project, const Settings& settings, const MemoryPlan& plan,
-                  const ExistingMaps& existing, ImageStore& images) {
+                  const ExistingMaps& existing, survey::ImageStore& images) {
   // The first stage reads the images of its part. Later stages need not check them again.
   if (settings.parts == 0)
     images.check_all(plan.decodes);
   else if (stages_to_make(settings) == 1)
-    images.check_part(plan.decodes);
+    images.check(images_of_part(project), plan.decodes);
   if (settings.make_maps)
     make_depth_maps(project, settings, plan, existing, images);
   else
@@ -103,7 +112,7 @@ void prepare_maps(const Project& project, const Settings& settings, const Memory
 // The images are in memory only in this function.
 std::size_t make_cloud(const Project& project, const Settings& settings, const MemoryPlan& plan,
                        const ExistingMaps& existing, const fs::path& ply) {
-  ImageStore images(project, settings, plan.cached_images);
+  survey::ImageStore images(project, channels_of(settings), plan.cached_images);
   prepare_maps(project, settings, plan, existing, images);
   return settings.fuse ? write_cloud(project, settings, plan, existing, images, ply)
                        : write_sparse_cloud(project, settings, ply);
@@ -124,7 +133,7 @@ Report make_stage(const Settings& settings, const SceneObserver& observer) {
   const OutputLock maps(maps_in(settings), use_of_maps(project, settings, existing));
   const MemoryPlan plan = plan_memory(project, settings);
   check_outputs(project, settings);
-  ImageStore images(project, settings, plan.cached_images);
+  survey::ImageStore images(project, channels_of(settings), plan.cached_images);
   prepare_maps(project, settings, plan, existing, images);
   return {Result::stage, {}, 0, project.part.size()};
 }
@@ -140,7 +149,7 @@ Report write_plan(const Settings& settings, const SceneObserver& observer) {
 Report make_tile(const Project& project, const Settings& settings, const MemoryPlan& plan,
                  const ExistingMaps& existing) {
   map_large_blocks();
-  ImageStore images(project, settings, plan.cached_images);
+  survey::ImageStore images(project, channels_of(settings), plan.cached_images);
   const CloudCounts counts = write_tile({project, settings, plan, existing, images});
   return {Result::tile, tile_file(settings, settings.tile), counts.points,
           project.references.size(), true};
@@ -159,7 +168,7 @@ Report reconstruct(const Settings& settings, const SceneObserver& observer) {
   const std::size_t points = make_cloud(project, settings, plan, existing, ply);
   return_freed_memory();  // the images' memory is needed to write the scene
   write_cameras_beside_output(project, settings);
-  io::write_mvs(settings.output, project.scene, settings.working_folder);
+  io::write_mvs(settings.output, project.scene, settings.survey.files.working_folder);
   log_info("{}: {} points", ply.string(), points);
   if (settings.fuse && points == 0)
     log_warning(

@@ -24,8 +24,9 @@ namespace {
 
 // The data for matching one image. They must live while it runs.
 struct Task {
-  std::vector<std::shared_ptr<const WorkImage>> pixels;  // of the reference, then of the sources
-  std::vector<depth::MatchImage> views;                  // in the order of `pixels`
+  std::vector<std::shared_ptr<const survey::Pixels>>
+      pixels;                            // of the reference, then of the sources
+  std::vector<depth::MatchImage> views;  // in the order of `pixels`
   std::vector<const depth::MatchImage*> sources;
   std::vector<Eigen::Vector3f> points;
   depth::MatchInput input;
@@ -34,7 +35,7 @@ struct Task {
 // Makes the maps of the stages. It must live while the stages run.
 class MapMaker {
  public:
-  MapMaker(const Project& project, const Settings& settings, ImageStore& images)
+  MapMaker(const Project& project, const Settings& settings, survey::ImageStore& images)
       : project_(project), settings_(settings), images_(images) {}
 
   std::vector<Stage> stages() const {
@@ -146,7 +147,7 @@ class MapMaker {
 
   const Project& project_;
   const Settings& settings_;
-  ImageStore& images_;
+  survey::ImageStore& images_;
 };
 
 }  // namespace
@@ -170,16 +171,16 @@ std::size_t stages_to_make(const Settings& settings) {
 }
 
 fs::path depth_map_path(const Project& project, const Settings& settings, std::size_t image) {
-  return settings.working_folder / io::depth_map_name(project.views[image].id);
+  return settings.survey.files.working_folder / io::depth_map_name(project.views[image].id);
 }
 
 std::string final_made_from(const Project& project, const Settings& settings) {
-  ImageStore unused(project, settings, 0);
+  survey::ImageStore unused(project, channels_of(settings), 0);
   return project.fingerprint + " " + MapMaker(project, settings, unused).stages().back().name;
 }
 
 void make_depth_maps(const Project& project, const Settings& settings, const MemoryPlan& plan,
-                     const ExistingMaps& existing, ImageStore& images) {
+                     const ExistingMaps& existing, survey::ImageStore& images) {
   const MapMaker maker(project, settings, images);
   StageRun run;
   run.images = project.part;

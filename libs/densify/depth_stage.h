@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "densify/existing_maps.h"
-#include "densify/image_store.h"
 #include "densify/memory_plan.h"
 #include "densify/project.h"
+#include "survey/image_store.h"
 
 namespace axial::densify {
 
@@ -50,6 +50,6 @@ std::string final_made_from(const Project& project, const Settings& settings);
 // (existing_maps.h) before. Throws an Error for an image that cannot be read and for a file that
 // cannot be written.
 void make_depth_maps(const Project& project, const Settings& settings, const MemoryPlan& plan,
-                     const ExistingMaps& existing, ImageStore& images);
+                     const ExistingMaps& existing, survey::ImageStore& images);
 
 }  // namespace axial::densify

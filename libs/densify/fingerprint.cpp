@@ -4,45 +4,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <initializer_list>
 #include <string>
 #include <vector>
 
 #include "base/hash.h"
-#include "densify/file_contents.h"
+#include "survey/fingerprint.h"
 
 namespace axial::densify {
 namespace {
-
-void add_numbers(Fingerprint& print, std::initializer_list<double> values) {
-  for (const double value : values) print.add(value);
-}
-
-void add_port(Fingerprint& print, const refractive::FlatPort<double>& port) {
-  add_numbers(print, {port.normal.x(), port.normal.y(), port.normal.z(), port.distance,
-                      port.thickness, port.n_air, port.n_glass, port.n_water});
-}
-
-void add_port(Fingerprint& print, const refractive::DomePort<double>& port) {
-  print.add("dome");
-  add_numbers(print, {port.centre.x(), port.centre.y(), port.centre.z(), port.inner_radius,
-                      port.thickness, port.n_air, port.n_glass, port.n_water});
-}
-
-void add_distortion(Fingerprint& print, refractive::LensDistortion<double> distortion) {
-  print.add("distortion");
-  distortion.each_field([&](double number) { print.add(number); });
-}
-
-void add_camera(Fingerprint& print, const CameraModel& camera) {
-  print.add(static_cast<std::uint64_t>(camera.width))
-      .add(static_cast<std::uint64_t>(camera.height));
-  print.add(camera.lens.fx).add(camera.lens.fy).add(camera.lens.cx).add(camera.lens.cy);
-  if (camera.distortion) add_distortion(print, *camera.distortion);
-  print.add(std::uint64_t{camera.port.has_value()});
-  if (!camera.port) return;
-  std::visit([&](const auto& port) { add_port(print, port); }, *camera.port);
-}
 
 void add_settings(Fingerprint& print, const Settings& settings) {
   const depth::PatchMatchOptions& matching = settings.matching;
@@ -52,7 +21,7 @@ void add_settings(Fingerprint& print, const Settings& settings) {
         static_cast<std::uint64_t>(matching.iterations),
         static_cast<std::uint64_t>(settings.geometric_iterations),
         static_cast<std::uint64_t>(settings.postprocess),
-        static_cast<std::uint64_t>(settings.ignore_mask_label)})
+        static_cast<std::uint64_t>(settings.survey.ignore_mask_label)})
     print.add(value);
 }
 
@@ -138,28 +107,15 @@ std::string changed_numbers(const Settings& settings) {
   return text;
 }
 
-// Camera, pose and pixels of a view. `content`: of contents_of_views().
-void add_view(Fingerprint& print, const Project& project, std::size_t i,
-              const std::string& content) {
-  const View& view = project.views[i];
-  print.add(std::uint64_t{view.id});
-  add_camera(print, view.camera);
-  for (const double value : view.pose.rotation.reshaped()) print.add(value);
-  for (const double value : view.pose.centre) print.add(value);
-  print.add(content);
-  if (view.file.bits > 8) print.add(static_cast<std::uint64_t>(project.bit_depth));
-  if (view.file.alpha) print.add("transparent pixels are masked");
+// Runs with `until` or `plan` for all images write the fingerprints of photographs to a file of the
+// working folder. Runs for parts read the file.
+survey::KeptContents kept_contents(const Settings& settings) {
+  const bool is_part = settings.parts > 0 || settings.tile > 0;
+  const bool is_kept = is_part || !settings.until.empty() || !settings.plan.empty();
+  return {settings.survey.files.working_folder / "depth_inputs.json", is_kept, is_kept && !is_part};
 }
 
 }  // namespace
-
-std::string fingerprint_of_views(const Project& project, const Settings& settings) {
-  Fingerprint print;
-  print.add("AxialMVS views 1").add(static_cast<std::uint64_t>(settings.ignore_mask_label));
-  const std::vector<std::string> contents = contents_of_views(project, settings);
-  for (std::size_t i = 0; i < contents.size(); ++i) add_view(print, project, i, contents[i]);
-  return print.hex();
-}
 
 std::string fingerprint(const Project& project, const Settings& settings) {
   Fingerprint print;
@@ -167,9 +123,10 @@ std::string fingerprint(const Project& project, const Settings& settings) {
   print.add("AxialMVS depth maps 12");
   add_settings(print, settings);
   if (const std::string changed = changed_numbers(settings); !changed.empty()) print.add(changed);
-  const std::vector<std::string> contents = contents_of_views(project, settings);
+  const std::vector<std::string> contents =
+      survey::contents_of_views(project, kept_contents(settings));
   for (std::size_t i = 0; i < project.views.size(); ++i) {
-    add_view(print, project, i, contents[i]);
+    survey::add_view(print, project, i, contents[i]);
     for (const auto* list : {&project.neighbours[i], &project.sources[i]}) {
       print.add(static_cast<std::uint64_t>(list->size()));
       for (const ViewScore& neighbour : *list) print.add(std::uint64_t{neighbour.image});

@@ -16,9 +16,4 @@ namespace axial::densify {
 // be selected. Throws an Error for a file that cannot be read.
 std::string fingerprint(const Project& project, const Settings& settings);
 
-// A fingerprint of the cameras, poses and pixels of all views at the working resolution, with their
-// masks. `project` needs no more than load_scene_and_headers() loads. Reads the image and mask
-// files of all calibrated images. Error for a file that cannot be read.
-std::string fingerprint_of_views(const Project& project, const Settings& settings);
-
 }  // namespace axial::densify

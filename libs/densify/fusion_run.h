@@ -9,10 +9,10 @@
 
 #include "cloud/fuse.h"
 #include "densify/existing_maps.h"
-#include "densify/image_store.h"
 #include "densify/memory_plan.h"
 #include "densify/project.h"
 #include "io/ply/ply.h"
+#include "survey/image_store.h"
 
 namespace axial::densify {
 
@@ -35,7 +35,7 @@ struct FusionRun {
   const Settings& settings;
   const MemoryPlan& plan;
   const ExistingMaps& existing;
-  ImageStore& images;
+  survey::ImageStore& images;
 };
 
 // The views of Project::references, in the same order.

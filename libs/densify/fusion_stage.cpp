@@ -48,7 +48,7 @@ io::PlyPlacement placement_of(const Project& project, const Settings& settings) 
 }
 
 std::size_t write_cloud(const Project& project, const Settings& settings, const MemoryPlan& plan,
-                        const ExistingMaps& existing, ImageStore& images,
+                        const ExistingMaps& existing, survey::ImageStore& images,
                         const std::filesystem::path& ply) {
   map_large_blocks();
   const FusionRun run{project, settings, plan, existing, images};

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "densify/existing_maps.h"
-#include "densify/image_store.h"
 #include "densify/memory_plan.h"
 #include "densify/project.h"
 #include "io/ply/ply.h"
+#include "survey/image_store.h"
 
 namespace axial::densify {
 
@@ -26,7 +26,7 @@ io::PlyPlacement placement_of(const Project& project, const Settings& settings);
 // result of find_existing_maps(). Calls map_large_blocks() (base/memory.h). Throws an Error if a
 // map or an image cannot be read, or if a file cannot be written.
 std::size_t write_cloud(const Project& project, const Settings& settings, const MemoryPlan& plan,
-                        const ExistingMaps& existing, ImageStore& images,
+                        const ExistingMaps& existing, survey::ImageStore& images,
                         const std::filesystem::path& ply);
 
 }  // namespace axial::densify

@@ -8,15 +8,11 @@
 
 namespace axial::densify {
 
-// The memory [bytes] of the program itself: code and libraries, stacks, small blocks, and the
-// portions of fusion.
-inline constexpr std::uint64_t kProgramBytes = 96 * kMegabyte;
-
-// The memory [bytes] that a run may use: Settings::max_memory, or a part of the available memory
-// (memory_limit() in base/memory.h). Throws an Error if max_memory is 0 and the system does not
-// tell how much memory is available.
+// The memory [bytes] that a run may use: MemoryAllowance::megabytes, or a part of the available
+// memory (memory_limit() in base/memory.h). Throws an Error if `megabytes` is 0 and the system does
+// not tell how much memory is available.
 inline std::uint64_t memory_limit(const Settings& settings) {
-  return axial::memory_limit(settings.max_memory, settings.name_of("max_memory"));
+  return axial::memory_limit(settings.survey.memory.megabytes, settings.name_of("max_memory"));
 }
 
 }  // namespace axial::densify

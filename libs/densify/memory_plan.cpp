@@ -81,11 +81,11 @@ MemoryPlan plan_memory(const Project& project, const Settings& settings) {
   const ListLengths lists = longest_lists(project, settings);
   const StageBytes bytes = bytes_of_stages(project, settings, lists);
   const std::uint64_t limit = memory_limit(settings);
-  const std::uint64_t fixed = bytes.scene + kProgramBytes;
+  const std::uint64_t fixed = bytes.scene + settings.survey.memory.program_bytes;
   const std::uint64_t least = fixed + least_bytes(bytes, lists, 1);
   if (limit < least)
     fail("{} {}: {} MB are too little, this scene needs {} MB", settings.name_of("max_memory"),
-         settings.max_memory, limit / kMegabyte, least / kMegabyte + 1);
+         settings.survey.memory.megabytes, limit / kMegabyte, least / kMegabyte + 1);
   const MemoryPlan plan = share_out(bytes, lists, limit - fixed, thread_count());
   log_details(
       "Memory {} MB, at least {}: {} images at a time, {} kept, {} depths, {} maps, {} in fusion",

@@ -37,13 +37,13 @@ struct MemoryPlan {
 MemoryPlan plan_memory(const Project& project, const Settings& settings);
 
 // The least memory [bytes] of a run that processes `in_flight` images at a time, without the loaded
-// scene (StageBytes::scene) and without kProgramBytes (memory_limit.h). Its caches hold only the
+// scene (StageBytes::scene) and without MemoryAllowance::program_bytes. Its caches hold only the
 // images and maps in work.
 std::uint64_t least_bytes(const StageBytes& bytes, const ListLengths& lists, std::size_t in_flight);
 
 // Returns the plan for at most `threads` images at a time. `room`: the allowed memory [bytes]
-// without the loaded scene (StageBytes::scene) and without kProgramBytes. Precondition: `room` is
-// at least least_bytes() for one image in flight.
+// without the loaded scene (StageBytes::scene) and without MemoryAllowance::program_bytes.
+// Precondition: `room` is at least least_bytes() for one image in flight.
 MemoryPlan share_out(const StageBytes& bytes, const ListLengths& lists, std::uint64_t room,
                      std::size_t threads);
 

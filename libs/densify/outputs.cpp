@@ -61,8 +61,7 @@ void check_side_output(const std::string& setting, const fs::path& output,
 }  // namespace
 
 std::vector<fs::path> scene_files(const Settings& settings) {
-  std::vector<fs::path> files =
-      io::files_of_scene({settings.input, settings.working_folder, settings.housing});
+  std::vector<fs::path> files = io::files_of_scene(settings.survey.files);
   files.insert(files.end(), {settings.point_cloud, settings.neighbour_lists});
   files.insert(files.end(), settings.other_inputs.begin(), settings.other_inputs.end());
   return files;
@@ -83,16 +82,13 @@ void check_outputs(const Settings& settings) {
     require_not_an_input(settings.report, scene_files(settings), settings.name_of("report"));
     require_writable(settings.report);
   }
-  require_writable(settings.working_folder / "depth0000.dmap");
-  remove_abandoned(settings.working_folder, "depth");
+  require_writable(settings.survey.files.working_folder / "depth0000.dmap");
+  remove_abandoned(settings.survey.files.working_folder, "depth");
 }
 
 void check_outputs(const Project& project, const Settings& settings) {
   std::vector<fs::path> inputs = scene_files(settings);
-  for (std::size_t i = 0; i < project.views.size(); ++i) {
-    inputs.emplace_back(project.scene.images[i].path);
-    inputs.push_back(project.views[i].mask);
-  }
+  for (const fs::path& file : survey::photograph_files(project)) inputs.push_back(file);
   require_no_inputs(cloud_outputs(settings), inputs, settings.name_of("output"));
   std::vector<fs::path> outputs = depth_outputs(project, settings);
   require_no_inputs(outputs, inputs, settings.name_of("working_folder"));

@@ -13,7 +13,6 @@
 #include "cloud/pinhole_resampling.h"
 #include "densify/cloud_exports.h"
 #include "densify/depth_stage.h"
-#include "densify/image_store.h"
 #include "densify/pinhole_folder.h"
 #include "io/bytes/json.h"
 #include "io/bytes/written_files.h"
@@ -25,6 +24,7 @@
 #include "io/openmvs/mvs.h"
 #include "io/ply/ply.h"
 #include "scene/resolution.h"
+#include "survey/image_store.h"
 
 namespace axial::densify {
 namespace fs = std::filesystem;
@@ -86,16 +86,17 @@ class Export {
   DepthMap load_map(std::size_t image, const cv::Mat1b& opaque) const {
     cv::Mat1b mask;
     if (!settings_.make_maps)
-      mask = working_mask(project_.views[image], opaque, settings_.ignore_mask_label);
+      mask =
+          survey::working_mask(project_.views[image], opaque, settings_.survey.ignore_mask_label);
     return read_final_map(project_, settings_, existing_, image, mask);
   }
 
   // The resolution at which OpenMVS, with this run's settings, would work on the pinhole image.
   cv::Size map_size(const CameraModel& pinhole, std::size_t image) const {
     if (settings_.make_maps)
-      return working_size(pinhole.width, pinhole.height, settings_.resolution);
+      return working_size(pinhole.width, pinhole.height, settings_.survey.resolution);
     const View& view = project_.views[image];
-    const double scale = static_cast<double>(view.camera.width) / view.file.size.width;
+    const double scale = static_cast<double>(view.camera.width) / view.header.size.width;
     return {std::max(1, cvRound(scale * pinhole.width)),
             std::max(1, cvRound(scale * pinhole.height))};
   }
@@ -211,7 +212,7 @@ class Export {
     }
     io::write_json(folder_ / kPinholeMarker, {{"version", 1},
                                               {"made_from", made_from()},
-                                              {"scene", settings_.input.string()},
+                                              {"scene", settings_.survey.files.scene.string()},
                                               {"images", images},
                                               {"files", io::list_files(folder_)}});
   }
@@ -249,11 +250,11 @@ class Export {
 
 std::uint64_t bytes_needed_to_resample(const View& view) {
   const auto area = [](cv::Size size) { return static_cast<std::uint64_t>(size.area()); };
-  const std::uint64_t photograph = area(view.file.size);
+  const std::uint64_t photograph = area(view.header.size);
   // Photograph and opacity; depth, colour, label and the encoded colour of a pinhole at most 1.4
   // times as wide and as high. While the photograph is read, the memory for reading.
   const std::uint64_t images =
-      std::max<std::uint64_t>(view.file.decode_bytes + 4, 4 + 2 * (4 + 3 + 1 + 4)) * photograph;
+      std::max<std::uint64_t>(view.header.decode_bytes + 4, 4 + 2 * (4 + 3 + 1 + 4)) * photograph;
   // The map, the map of the pinhole and the memory for writing it; two depth images, filled.
   const std::uint64_t pixels = area({view.camera.width, view.camera.height});
   const std::uint64_t pinhole = bytes_of_map(pixels) + io::dmap_bytes_needed(pixels) + 16 * pixels;

@@ -53,8 +53,8 @@ void check_folder(const Project& project, const Settings& settings) {
     for (; inputs.insert(above).second && above.has_relative_path(); above = above.parent_path()) {
     }
   };
-  add(settings.input.parent_path());
-  add(settings.working_folder);
+  add(settings.survey.files.scene.parent_path());
+  add(settings.survey.files.working_folder);
   for (const SceneImage& image : project.scene.images) add(fs::path(image.path).parent_path());
   for (const fs::path& input : inputs)
     if (fs::equivalent(folder, input, error))
@@ -94,7 +94,7 @@ void check_pinhole_export(const Project& project, const Settings& settings) {
         "{} {}: no image of {} has a port or a distorted lens: OpenMVS can use the other "
         "results of this run directly",
         settings.name_of("pinhole_export"), settings.pinhole_export.string(),
-        settings.input.string());
+        settings.survey.files.scene.string());
   check_folder(project, settings);
   check_names(project, settings);
   require_writable_folder(settings.pinhole_export);

@@ -5,17 +5,11 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/first_error.h"
 #include "base/log.h"
-#include "base/parallel.h"
 #include "base/progress.h"
 #include "densify/fingerprint.h"
-#include "densify/masks.h"
 #include "densify/neighbour_lists.h"
 #include "densify/scene_memory.h"
-#include "io/images/bit_depth.h"
-#include "io/images/image.h"
-#include "io/images/photograph_size.h"
 #include "io/openmvs/point_source.h"
 
 namespace axial::densify {
@@ -23,52 +17,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-View load_view(const SceneImage& image, std::size_t index, const Settings& settings) {
-  View view;
-  view.id = image.id == kNoId ? static_cast<std::uint32_t>(index) : image.id;
-  view.file = io::read_image_header(image.path);
-  const cv::Size size =
-      working_size(view.file.size.width, view.file.size.height, settings.resolution);
-  view.camera = image.camera.resized(size.width, size.height);
-  view.pose = image.pose;
-  return view;
-}
-
-void find_bit_depth(Project& project, const Settings& settings) {
-  std::vector<fs::path> photographs;
-  std::vector<io::ImageHeader> headers;
-  for (std::size_t i = 0; i < project.views.size(); ++i) {
-    if (!project.scene.images[i].calibrated) continue;
-    photographs.emplace_back(project.scene.images[i].path);
-    headers.push_back(project.views[i].file);
-  }
-  project.bit_depth =
-      io::common_bit_depth(photographs, headers, settings.bit_depth, settings.name_of("bit_depth"));
-}
-
-void check_sizes(const Project& project) {
-  std::vector<io::PhotographSize> sizes;
-  for (std::size_t i = 0; i < project.views.size(); ++i) {
-    const SceneImage& image = project.scene.images[i];
-    if (image.calibrated)
-      sizes.push_back(
-          {image.path, project.views[i].file.size, {image.camera.width, image.camera.height}});
-  }
-  io::check_photograph_sizes(sizes);
-}
-
-void load_views(Project& project, const Settings& settings) {
-  const std::size_t count = project.scene.images.size();
-  project.views.resize(count);
-  FirstError error;
-  parallel_for(count, [&](std::size_t i) {
-    if (project.scene.images[i].calibrated)
-      error.run(i, [&] { project.views[i] = load_view(project.scene.images[i], i, settings); });
-  });
-  error.rethrow();
-  check_sizes(project);
-  choose_masks(project, settings);
-  find_bit_depth(project, settings);
+void find_views(Project& project) {
+  find_photographs(project);
+  std::vector<View> views(project.scene.images.size());
+  for (View& view : project.views) views[view.image] = std::move(view);
+  project.views = std::move(views);
 }
 
 void check_ids(const Project& project) {
@@ -122,10 +75,14 @@ void select_views(Project& project, const Settings& settings, const SceneObserve
       project.references.push_back(i);
   }
   if (project.references.empty())
-    fail("{}: no image has neighbours to be matched with", settings.input.string());
+    fail("{}: no image has neighbours to be matched with", settings.survey.files.scene.string());
 }
 
 }  // namespace
+
+survey::Channels channels_of(const Settings& settings) {
+  return needs_colors(settings) ? survey::Channels::both : survey::Channels::grey;
+}
 
 std::vector<std::size_t> part_of(std::span<const std::size_t> images, const Settings& settings) {
   std::size_t begin = 0, end = images.size();
@@ -142,44 +99,25 @@ bool all_pinholes(const Project& project) {
       project.views, [](const View& view) { return view.camera.port || view.camera.distortion; });
 }
 
-namespace {
-
-io::SceneFiles scene_files_of(const Settings& settings) {
-  io::SceneFiles files{settings.input, settings.working_folder, settings.housing};
-  files.ports = settings.camera == CameraChoice::pinhole     ? io::PortChoice::ignored
-                : settings.camera == CameraChoice::flat_port ? io::PortChoice::flat
-                : settings.refractive                        ? io::PortChoice::required
-                                                             : io::PortChoice::automatic;
-  files.allow_missing = settings.allow_missing;
-  files.name_of = settings.name_of;
-  return files;
-}
-
-}  // namespace
-
 fs::path housing_file(const Settings& settings) {
-  return io::housing_file(scene_files_of(settings));
+  return io::housing_file(settings.survey.files);
 }
 
 Project load_scene(const Settings& settings) {
   require_memory_to_read(settings);
+  survey::Options options = settings.survey;
+  options.has_memory_limit = false;  // require_memory_to_read() has checked more than the scene
   Project project;
-  static_cast<io::SceneWithCameras&>(project) =
-      io::read_scene_with_cameras(scene_files_of(settings));
+  static_cast<survey::Survey&>(project) = survey::open_scene(options);
   project.lenses = io::lenses_of(project.scene, settings.output);
   if (!settings.point_cloud.empty())
     io::use_point_cloud(project.scene, project.frame, settings.point_cloud);
   return project;
 }
 
-Project load_scene_and_headers(const Settings& settings) {
-  Project project = load_scene(settings);
-  load_views(project, settings);
-  return project;
-}
-
 Project load_project(const Settings& settings, const SceneObserver& observer) {
-  Project project = load_scene_and_headers(settings);
+  Project project = load_scene(settings);
+  find_views(project);
   check_ids(project);
   select_views(project, settings, observer);
   project.part = part_of(project.references, settings);
@@ -188,7 +126,7 @@ Project load_project(const Settings& settings, const SceneObserver& observer) {
 }
 
 void write_cameras_beside_output(const Project& project, const Settings& settings) {
-  io::write_cameras_beside(settings.output, project, project.lenses, scene_files_of(settings));
+  io::write_cameras_beside(settings.output, project, project.lenses, settings.survey.files);
 }
 
 }  // namespace axial::densify

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <opencv2/core.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,41 +12,27 @@
 #include "densify/scene_facts.h"
 #include "densify/settings.h"
 #include "io/cameras/lenses.h"
-#include "io/images/image.h"
-#include "io/openmvs/scene_with_cameras.h"
 #include "scene/view_selection.h"
+#include "survey/image_store.h"
 
 namespace axial::densify {
 
-// One image of the scene at its working resolution. Its pixels are in ImageStore (image_store.h).
-// Images without calibration have an empty camera (width and height 0), and their other members
-// have their defaults.
-struct View {
-  std::uint32_t id = 0;  // global id: SceneImage::id, or the index of the image if that is kNoId
-  CameraModel camera;    // at the working resolution
-  Pose pose;
-  io::ImageHeader file;        // header of the photograph
-  std::filesystem::path mask;  // file of the mask; empty: none
+using survey::View;
 
-  // Whether WorkImage::mask may be non-empty.
-  bool masked() const { return !mask.empty() || file.alpha; }
-};
-
-// The input of one run. load_scene() fills SceneWithCameras and `lenses`. load_scene_and_headers()
-// also fills `views` and `bit_depth`. load_project() fills all members.
-struct Project : io::SceneWithCameras {
+// The input of one run. load_scene() fills the members of the scene, and `lenses`. load_project()
+// fills all members. In a project, Survey::views has one entry for each image of the scene: the
+// camera of an image without calibration is empty (width and height 0).
+struct Project : survey::Survey {
   io::SceneLenses lenses;  // lenses that are written beside the output
-  // The next four have one entry for each image of the scene.
+  // The next three have one entry for each image of the scene.
   std::vector<ViewPreparation> preparations;  // results of score_neighbours()
-  std::vector<View> views;
   // Results of filter_neighbours(); unusable image: none.
   std::vector<std::vector<ViewScore>> neighbours;
   // Source views for matching; image without a map: none.
   std::vector<std::vector<ViewScore>> sources;
   std::vector<std::size_t> references;  // images that get a depth map: indices, ascending
   std::vector<std::size_t> part;        // the references whose maps this run makes (Settings::part)
-  int bit_depth = 16;       // number of bits that the values of 16-bit images use, 8 to 16
-  std::string fingerprint;  // the result of fingerprint() (fingerprint.h)
+  std::string fingerprint;              // the result of fingerprint() (fingerprint.h)
 };
 
 // Loads the scene with its ports and lenses, and the points of Settings::point_cloud. Reads no
@@ -55,18 +40,16 @@ struct Project : io::SceneWithCameras {
 // to read them.
 Project load_scene(const Settings& settings);
 
-// Loads the scene as load_scene() does, and reads the headers of its images. Finds the masks, and
-// the bit depth of the images, for which images of more than 8 bits may be decoded. Selects no
-// views. Throws the Errors of load_project() that concern these files.
-Project load_scene_and_headers(const Settings& settings);
-
 // Loads the scene, reads its images and masks, and selects views. Of image files, the headers are
 // kept. The bytes of image and mask files only enter the fingerprint. `observer`, unless it is
 // empty, is called before views are selected. Throws an Error for a fault of the scene or its
 // housing, for files that are missing or truncated, for images whose shape differs from their
 // camera's, for an id that two images have, and if no image can get a depth map.
-// ImageStore::check_all() finds other faults of images.
+// survey::ImageStore::check_all() finds other faults of images.
 Project load_project(const Settings& settings, const SceneObserver& observer = {});
+
+// The channels of the photographs that a run needs.
+survey::Channels channels_of(const Settings& settings);
 
 // Returns the images of the part Settings::part: consecutive elements of `images`. The numbers of
 // images of two parts differ by one at most. Returns all images if Settings::parts is 0.

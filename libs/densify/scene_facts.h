@@ -9,7 +9,7 @@ namespace axial::densify {
 // Properties of a scene that are known before its views are selected.
 struct SceneFacts {
   // At least one image is behind a port. False if the settings ignore the ports
-  // (CameraChoice::pinhole).
+  // (io::PortChoice::ignored).
   bool behind_ports = false;
   bool own_region = false;  // the scene file contains a region of interest
   // The run has a region of interest: the region of the scene file, or else an estimated region.

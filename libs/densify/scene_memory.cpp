@@ -25,7 +25,7 @@ std::uint64_t side_files(const Settings& settings) {
   constexpr std::uint64_t kPerByte = 12;
   std::uint64_t bytes = 0;
   for (const std::filesystem::path& file :
-       {housing_file(settings), io::lenses_beside(settings.input)}) {
+       {housing_file(settings), io::lenses_beside(settings.survey.files.scene)}) {
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (!error) bytes += size;
@@ -41,7 +41,7 @@ std::uint64_t kept_of(const io::MvsCounts& counts, const Settings& settings) {
 // The peak while the file of the scene is read and before its views are scored. Empty if the file
 // cannot be counted.
 std::optional<std::uint64_t> bytes_to_read(const Settings& settings) {
-  auto counts = io::count_mvs(settings.input);
+  auto counts = io::count_mvs(settings.survey.files.scene);
   if (!counts) return {};
   std::uint64_t reading = counts->reading_bytes();
   if (!settings.point_cloud.empty())
@@ -66,12 +66,13 @@ std::uint64_t bytes_to_score(const io::MvsCounts& counts, const ScoringSize& siz
 
 // `bytes`: the peak while the scene is read and its views are scored.
 void require_memory_for_scene(std::uint64_t bytes, const Settings& settings) {
-  const std::uint64_t cap = memory_limit(settings), least = bytes + kProgramBytes;
-  if (bytes > kProgramBytes && cap < least)
+  const std::uint64_t cap = memory_limit(settings),
+                      least = bytes + settings.survey.memory.program_bytes;
+  if (bytes > settings.survey.memory.program_bytes && cap < least)
     fail(
         "{} {}: {} MB are too little, this scene needs at least {} MB for reading and for "
         "scoring its views",
-        settings.name_of("max_memory"), settings.max_memory, cap / kMegabyte,
+        settings.name_of("max_memory"), settings.survey.memory.megabytes, cap / kMegabyte,
         least / kMegabyte + 1);
 }
 
@@ -84,7 +85,8 @@ void require_memory_to_read(const Settings& settings) {
 void require_memory_to_score(const Scene& scene, const Settings& settings) {
   ScoringSize size = scoring_size(scene, settings.selection);
   const io::MvsCounts counts = io::count_scene(scene);
-  if (bytes_to_score(counts, size, settings) + kProgramBytes > memory_limit(settings))
+  if (bytes_to_score(counts, size, settings) + settings.survey.memory.program_bytes >
+      memory_limit(settings))
     size.neighbours = count_neighbours(scene, settings.selection);
   require_memory_for_scene(bytes_to_score(counts, size, settings), settings);
 }
@@ -95,7 +97,7 @@ std::uint64_t least_memory_to_prepare(const Scene& scene, const Settings& settin
   for (const SceneImage& image : scene.images) size.neighbours += image.neighbours.size();
   io::MvsCounts counts = io::count_scene(scene);
   counts.set_view_scores(0);  // before scoring
-  return kProgramBytes +
+  return settings.survey.memory.program_bytes +
          std::max(bytes_to_score(counts, size, settings), bytes_to_read(settings).value_or(0));
 }
 

@@ -7,12 +7,12 @@
 
 namespace axial::densify {
 
-// Throws an Error if the allowed memory is too little for reading the scene of settings.input, with
-// the points of settings.point_cloud, and for scoring its views. The allowed memory is
+// Throws an Error if the allowed memory is too little for reading the scene of the settings, with
+// the points of Settings::point_cloud, and for scoring its views. The allowed memory is
 // memory_limit() (memory_limit.h). The error names max_memory, its value and the least necessary
 // value. Call this function before the scene is read: it estimates the memory from the counts of
 // images and points in the files. There is no error in two cases:
-// - The estimate is at most kProgramBytes, the memory of the program itself. plan_memory() checks
+// - The estimate is at most MemoryAllowance::program_bytes. plan_memory() checks
 //   the whole need later.
 // - The counts cannot be read. The function that reads the scene reports the fault.
 void require_memory_to_read(const Settings& settings);

@@ -4,23 +4,19 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
-#include "base/setting_names.h"
 #include "cloud/fuse.h"
 #include "depth/filters.h"
 #include "depth/options.h"
 #include "scene/camera_list.h"
 #include "scene/region.h"
-#include "scene/resolution.h"
 #include "scene/view_selection.h"
+#include "survey/options.h"
 
 namespace axial::densify {
-
-// Selects the ports of the cameras. automatic: the ports of the housing file, if there is one.
-// pinhole: no ports; the housing file is not read. flat_port: the ports of the housing file; error
-// if it is missing or does not give every calibrated image a flat port.
-enum class CameraChoice { automatic, pinhole, flat_port };
 
 // Selects the depth maps of which pictures are written. The pictures (.png) lie beside the maps.
 enum class Pictures { none, final_maps, maps_of_every_stage };
@@ -31,17 +27,16 @@ inline constexpr std::size_t kMostTiles = 1000;
 // remove_speckles(), fill_gaps() and adjust_with_neighbours(), in this order.
 inline constexpr unsigned kSpeckles = 1, kGaps = 2, kAdjust = 4;
 
-// Paths are absolute. `input`, `output` and `working_folder` are required. Any other path may be
-// empty. An empty path means "none", unless its comment says otherwise.
+// Paths are absolute. `survey.files.scene`, `survey.files.working_folder` and `output` are
+// required. Any other path may be empty. An empty path means "none", unless its comment says
+// otherwise.
 struct Settings {
-  std::filesystem::path input;           // scene (.mvs)
-  std::filesystem::path output;          // scene to write (.mvs); its cloud has the extension .ply
-  std::filesystem::path working_folder;  // for depth maps; base of relative paths in the scene
-  std::filesystem::path housing;         // housing file; empty: beside the scene, if there is one
-  std::filesystem::path point_cloud;     // sparse points (.ply); empty: the scene's own points
-  // Folder with a mask for every calibrated image. Empty: the mask that the scene names for the
-  // image, or a mask in the image's folder (io::find_masks).
-  std::filesystem::path mask_folder;
+  // The scene, its photographs and masks, and the memory of the run. The working folder also gets
+  // the depth maps. All calibrated images are used. Errors and warnings name the fields of this
+  // struct and of `survey` by survey.files.name_of.
+  survey::Options survey;
+  std::filesystem::path output;       // scene to write (.mvs); its cloud has the extension .ply
+  std::filesystem::path point_cloud;  // sparse points (.ply); empty: the scene's own points
   // File that replaces computed lists of neighbours (neighbour_lists.h). Empty: all are computed.
   std::filesystem::path neighbour_lists;
   // If not empty, the run only writes the lists of neighbours to this file.
@@ -52,21 +47,8 @@ struct Settings {
   std::filesystem::path pinhole_export;
   std::vector<std::filesystem::path> other_inputs;  // the caller's files: never overwritten
 
-  int ignore_mask_label = -1;  // value of mask pixels to leave out; below 0: no masks are used
-  // The number of bits that the values of 16-bit images use: 8 to 16. 0: as many as the largest
-  // value in all images needs.
-  int bit_depth = 0;
-
-  CameraChoice camera = CameraChoice::automatic;
-  // True: error if there is no housing file, or if it gives no image a port. Has an effect only
-  // with CameraChoice::automatic.
-  bool refractive = false;
-  // True: a warning instead of an error if the file `housing` has ports, but gives no image a port.
-  // Has no effect if ports are required (`refractive` or CameraChoice::flat_port).
-  bool allow_missing = false;
   ProjectionMethod projection = ProjectionMethod::exact;
 
-  ResolutionOptions resolution;
   ViewSelectionOptions selection;
   depth::PatchMatchOptions matching;
   depth::SpeckleOptions speckles;
@@ -119,11 +101,10 @@ struct Settings {
   std::size_t planned_parts = 0;  // number of parts in the file `plan`; 0: by the work
 
   Pictures pictures = Pictures::none;
-  std::uint64_t max_memory = 0;  // [MB of 10^6 bytes]; 0: 70 % of the free memory
-  unsigned max_threads = 0;      // largest number of threads; 0: as many as cores
+  unsigned max_threads = 0;  // largest number of threads; 0: as many as cores
 
-  // How errors and warnings name the fields of this struct.
-  SettingNames name_of = own_name;
+  // How errors and warnings name `setting`, a field of this struct or of `survey`.
+  std::string name_of(std::string_view setting) const { return survey.files.name_of(setting); }
 };
 
 // Whether the dense cloud takes colours from the images.

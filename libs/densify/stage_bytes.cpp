@@ -6,13 +6,13 @@
 #include "base/memory.h"
 #include "cloud/fuse.h"
 #include "densify/fusion_tiles.h"
-#include "densify/image_store.h"
 #include "densify/pinhole_export.h"
 #include "depth/filters.h"
 #include "depth/patch_match.h"
 #include "io/images/image.h"
 #include "io/openmvs/dmap.h"
 #include "io/openmvs/mvs_counts.h"
+#include "survey/image_store.h"
 
 namespace axial::densify {
 
@@ -42,14 +42,14 @@ StageBytes bytes_of_stages(const Project& project, const Settings& settings,
       bytes.exported = std::max(bytes.exported, bytes_needed_to_resample(view));
     pixels = std::max(pixels, static_cast<std::uint64_t>(view.camera.width) *
                                   static_cast<std::uint64_t>(view.camera.height));
-    decode = std::max(decode, io::bytes_needed(view.file));
+    decode = std::max(decode, io::bytes_needed(view.header));
     masks |= view.masked();
   }
   const bool colors = needs_colors(settings);
   bytes.scene = allocated_memory();
   bytes.write_scene = io::count_scene(project.scene).writing_bytes();
-  bytes.decode = bytes_needed_to_load(decode, pixels);
-  bytes.image = bytes_needed(WorkImageSize{pixels, masks, colors});
+  bytes.decode = survey::bytes_needed_to_load(decode, pixels);
+  bytes.image = survey::bytes_needed(survey::PixelsSize{pixels, masks, colors});
   bytes.map = bytes_of_map(pixels);
   bytes.depths = bytes_of_depths(pixels);
   bytes.read_map = io::dmap_bytes_needed(pixels);

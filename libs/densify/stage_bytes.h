@@ -31,7 +31,7 @@ struct StageBytes {
   std::uint64_t scene = 0;        // of the loaded scene: the memory that is allocated already
   std::uint64_t write_scene = 0;  // while the scene is written, in addition to `scene`
   std::uint64_t decode = 0;       // while an image is read, in addition to `image`
-  std::uint64_t image = 0;        // one WorkImage (image_store.h)
+  std::uint64_t image = 0;        // one survey::Pixels (image_store.h)
   std::uint64_t map = 0;          // one DepthMap: depth, normal, confidence
   std::uint64_t depths = 0;       // the depths of a DepthMap alone
   std::uint64_t read_map = 0;     // while a map is read or written, in addition to `map`

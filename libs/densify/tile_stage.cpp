@@ -133,8 +133,8 @@ class TileRun {
     if (run_.plan.fused_maps < run_.plan.least_fused_maps + fewer)
       fail(
           "{} {}: tile {} of {} needs {} views, more than expected: allow more memory or use {} {}",
-          run_.settings.name_of("max_memory"), run_.settings.max_memory, tile, parts_.size(),
-          needed, run_.settings.name_of("fusion_tiles"), 2 * parts_.size());
+          run_.settings.name_of("max_memory"), run_.settings.survey.memory.megabytes, tile,
+          parts_.size(), needed, run_.settings.name_of("fusion_tiles"), 2 * parts_.size());
     return run_.plan.fused_maps - fewer;
   }
 

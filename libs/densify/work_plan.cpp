@@ -77,9 +77,9 @@ WorkPlan plan_work(const Project& project, const Settings& settings) {
   plan.stages = stage_names(settings);
   plan.parts = number_of_parts(settings, plan.images, *std::ranges::max_element(seconds));
   // With less memory, fewer images than threads would be processed at the same time.
-  const std::uint64_t memory =
-      std::max(bytes.scene + kProgramBytes + least_bytes(bytes, lists, plan.threads),
-               least_memory_to_prepare(project.scene, settings));
+  const std::uint64_t memory = std::max(
+      bytes.scene + settings.survey.memory.program_bytes + least_bytes(bytes, lists, plan.threads),
+      least_memory_to_prepare(project.scene, settings));
   const double share =
       std::ceil(static_cast<double>(plan.images) / static_cast<double>(plan.parts)) /
       static_cast<double>(plan.images);

@@ -51,7 +51,8 @@ TEST_F(Densify, MakesACloudOnTheSurfaceAndReportsIt) {
     near += std::abs(place.norm() - depth) < 0.053 ? 1 : 0;
   }
   EXPECT_GT(near, cloud.size() * 9 / 10);
-  EXPECT_EQ(io::read_mvs(settings_.output, settings_.working_folder).images.size(), 4u);
+  EXPECT_EQ(io::read_mvs(settings_.output, settings_.survey.files.working_folder).images.size(),
+            4u);
 }
 
 TEST_F(Densify, ASecondRunUsesTheDepthMapsOfTheFirst) {
@@ -70,7 +71,7 @@ TEST_F(Densify, ASecondRunUsesTheDepthMapsOfTheFirst) {
 
 // The least memory [MB] that these settings need, from the message that refuses less.
 std::uint64_t least_memory(Settings settings) {
-  settings.max_memory = 1;
+  settings.survey.memory.megabytes = 1;
   const std::string refusal = test::error_of([&] { densify(settings); });
   const std::string_view before = "this scene needs ";
   const std::size_t at = refusal.find(before);
@@ -85,14 +86,14 @@ TEST_F(Densify, ThreadsAndMemoryDoNotChangeTheCloud) {
   const std::string cloud = read_file(folder_ / "out" / "dense.ply");
   use_folder("other");
   const std::uint64_t least = least_memory(settings_);
-  settings_.max_memory = least - 1;
+  settings_.survey.memory.megabytes = least - 1;
   EXPECT_THAT(test::error_of([&] { densify(settings_); }), HasSubstr("are too little"));
-  settings_.max_memory = least;
+  settings_.survey.memory.megabytes = least;
   for (const unsigned threads : {0u, 1u}) {
     use_folder("threads" + std::to_string(threads));
     settings_.max_threads = threads;
     densify(settings_);
-    EXPECT_EQ(read_file(settings_.working_folder / "dense.ply"), cloud) << threads;
+    EXPECT_EQ(read_file(settings_.survey.files.working_folder / "dense.ply"), cloud) << threads;
   }
 }
 
@@ -122,10 +123,11 @@ TEST_F(Densify, ExportsAndListsMakeNoDepthMaps) {
 }
 
 TEST_F(Densify, RefusesToOverwriteInputs) {
-  const std::string scene = read_file(settings_.input);
-  settings_.output = settings_.input;
-  EXPECT_THAT(test::error_of([&] { densify(settings_); }), HasSubstr(settings_.input.string()));
-  EXPECT_EQ(read_file(settings_.input), scene);
+  const std::string scene = read_file(settings_.survey.files.scene);
+  settings_.output = settings_.survey.files.scene;
+  EXPECT_THAT(test::error_of([&] { densify(settings_); }),
+              HasSubstr(settings_.survey.files.scene.string()));
+  EXPECT_EQ(read_file(settings_.survey.files.scene), scene);
   use_folder("out");
   settings_.other_inputs = {folder_ / "out" / "dense.ply"};
   write_atomically(settings_.other_inputs.front(), "the caller's");
@@ -137,13 +139,13 @@ TEST_F(Densify, ErrorsNameSettingsInTheWordsOfTheCaller) {
   fs::create_directories(folder_ / "no_masks");
   Settings memory = settings_, output = settings_, report = settings_, lists = settings_,
            masks = settings_, housing = settings_, maps = settings_, pinholes = settings_;
-  memory.max_memory = 1;
-  output.output = settings_.input;
-  report.report = settings_.input;
-  lists.neighbour_lists_output = settings_.input;
-  masks.mask_folder = folder_ / "no_masks";
-  masks.ignore_mask_label = 0;
-  housing.refractive = true;
+  memory.survey.memory.megabytes = 1;
+  output.output = settings_.survey.files.scene;
+  report.report = settings_.survey.files.scene;
+  lists.neighbour_lists_output = settings_.survey.files.scene;
+  masks.survey.mask_folder = folder_ / "no_masks";
+  masks.survey.ignore_mask_label = 0;
+  housing.survey.files.ports = io::PortChoice::required;
   maps.make_maps = false;
   pinholes.pinhole_export = folder_ / "pinholes";
   const std::pair<std::string, Settings*> cases[] = {
@@ -154,20 +156,24 @@ TEST_F(Densify, ErrorsNameSettingsInTheWordsOfTheCaller) {
   for (const auto& [words, settings] : cases) {
     const auto error = [&] { return test::error_of([&] { densify(*settings); }); };
     EXPECT_THAT(error(), AllOf(HasSubstr(words), Not(ContainsRegex("--[a-z]"))));
-    settings->name_of = [](std::string_view setting) { return fmt::format("<{}", setting); };
+    settings->survey.files.name_of = [](std::string_view setting) {
+      return fmt::format("<{}", setting);
+    };
     EXPECT_THAT(error(), HasSubstr("<" + words));
   }
 }
 
 TEST_F(Densify, WarningsNameSettingsInTheWordsOfTheCaller) {
-  settings_.mask_folder = folder_;
+  settings_.survey.mask_folder = folder_;
   settings_.neighbour_lists_output = folder_ / "lists.txt";
   const LogCapture log;
   densify(settings_);
   EXPECT_THAT(log.text(), HasSubstr("mask_folder " + folder_.string() +
                                     ": is not used, because ignore_mask_label is -1\n"));
   EXPECT_THAT(log.text(), Not(ContainsRegex("--[a-z]")));
-  settings_.name_of = [](std::string_view setting) { return fmt::format("<{}>", setting); };
+  settings_.survey.files.name_of = [](std::string_view setting) {
+    return fmt::format("<{}>", setting);
+  };
   densify(settings_);
   EXPECT_THAT(log.text(), HasSubstr("because <ignore_mask_label> is -1\n"));
 }

@@ -23,12 +23,12 @@ using testing::HasSubstr;
 class ExistingMapsTest : public testing::Test {
  protected:
   ExistingMapsTest() {
-    settings_.working_folder = test::empty_folder();
+    settings_.survey.files.working_folder = test::empty_folder();
     const std::vector<Pose> poses = test::circle_of_poses(3);
     project_.scene = test::scene_of(test::dry_camera(), poses);
     for (std::size_t i = 0; i < poses.size(); ++i) {
       project_.views.push_back(
-          {static_cast<std::uint32_t>(i), test::dry_camera(), poses[i], {}, {}});
+          {test::dry_camera(), poses[i], i, static_cast<std::uint32_t>(i), {}, {}, {}});
       project_.references.push_back(i), project_.part.push_back(i);
     }
   }

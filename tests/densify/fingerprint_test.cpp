@@ -39,9 +39,9 @@ class FingerprintTest : public testing::Test {
     project.neighbours = {{{.image = 1}}, {{.image = 0}}};
     project.sources = project.neighbours;
     for (std::uint32_t i = 0; i < 2; ++i) {
-      project.scene.images[i].path = (folder_ / ("image" + std::to_string(i))).string();
-      write_atomically(project.scene.images[i].path, "pixels");
-      project.views.push_back({i, project.scene.images[i].camera, poses[i], {}, {}});
+      const std::filesystem::path path = folder_ / ("image" + std::to_string(i));
+      write_atomically(path, "pixels");
+      project.views.push_back({project.scene.images[i].camera, poses[i], i, i, path, {}, {}});
     }
     write_atomically(folder_ / "other", "other pixels");
   }
@@ -66,7 +66,7 @@ TEST_F(FingerprintTest, ChangesWithEverythingThatTheDepthMapsDependOn) {
       [](Input& in) { in.settings.projection = ProjectionMethod::line_search; },
       [](Input& in) { in.settings.geometric_iterations = 1; },
       [](Input& in) { in.settings.postprocess = kSpeckles; },
-      [](Input& in) { in.settings.ignore_mask_label = 3; },
+      [](Input& in) { in.settings.survey.ignore_mask_label = 3; },
       [](Input& in) { in.settings.matching.keep_cost = 1.5f; },
       [](Input& in) { in.settings.speckles.min_pixels = 7; },
       [](Input& in) { in.settings.gaps.max_gap = 3; },
@@ -78,10 +78,10 @@ TEST_F(FingerprintTest, ChangesWithEverythingThatTheDepthMapsDependOn) {
       [](Input& in) { in.project.views[1].camera.distortion.emplace(); },
       [](Input& in) { in.project.views[1].pose.centre.z() += 1e-9; },
       [](Input& in) { in.project.views[1].pose.rotation(0, 1) += 1e-9; },
-      [](Input& in) { in.project.views[1].file.alpha = true; },
-      [](Input& in) { in.project.views[1].file.bits = 16; },
+      [](Input& in) { in.project.views[1].header.alpha = true; },
+      [](Input& in) { in.project.views[1].header.bits = 16; },
       [&](Input& in) { in.project.views[1].mask = folder_ / "other"; },
-      [&](Input& in) { in.project.scene.images[1].path = (folder_ / "other").string(); },
+      [&](Input& in) { in.project.views[1].file = folder_ / "other"; },
       [](Input& in) { in.project.neighbours[1].clear(); },
       [](Input& in) { in.project.sources[1].clear(); },
       [](Input& in) { in.project.scene.points[0].position.x() += 1; },
@@ -97,7 +97,7 @@ TEST_F(FingerprintTest, DoesNotDependOnFusionMemoryAndThreads) {
               in.settings.fusion.min_views = 7;
               in.settings.estimate_colors = 0;
               in.settings.crop_to_roi = false;
-              in.settings.max_memory = 1000;
+              in.settings.survey.memory.megabytes = 1000;
               in.settings.max_threads = 1;
               in.settings.output = "elsewhere.mvs";
             }));
@@ -107,9 +107,8 @@ TEST_F(FingerprintTest, DoesNotDependOnFusionMemoryAndThreads) {
 
 // The same file under another name.
 TEST_F(FingerprintTest, DependsOnTheContentsOfFilesAndNotOnTheirNames) {
-  EXPECT_EQ(after([](Input&) {}), after([](Input& in) {
-              in.project.scene.images[1].path = in.project.scene.images[0].path;
-            }));
+  EXPECT_EQ(after([](Input&) {}),
+            after([](Input& in) { in.project.views[1].file = in.project.views[0].file; }));
 }
 
 // One image behind a flat port. All numbers are written out, so that no mathematical library
@@ -130,7 +129,6 @@ Input written_out_input(const std::filesystem::path& image) {
   Input input;
   Project& project = input.project;
   project.scene = test::scene_of(camera, {pose});
-  project.scene.images[0].path = image.string();
   write_atomically(image, "pixels");
   project.scene.points.resize(1);
   project.scene.points[0].position = {1, 2, 3};
@@ -138,7 +136,7 @@ Input written_out_input(const std::filesystem::path& image) {
   project.preparations[0].init_points = {0};
   project.neighbours = {{{.image = 4}}};
   project.sources = {{{.image = 4}, {.image = 5}}};
-  project.views.push_back({3, camera, pose, {}, {}});
+  project.views.push_back({camera, pose, 0, 3, image, {}, {}});
   return input;
 }
 
@@ -189,7 +187,7 @@ void each_number(Settings& settings, const Visit& visit) {
        search_pairs, certain_cost, keep_cost, geometric_weight, geometric_limit);
   each(depth_sigma, depth_bonus, normal_sigma, normal_bonus, speckle_difference, min_pixels,
        max_gap, gap_difference, settings.geometric_iterations, settings.postprocess,
-       settings.ignore_mask_label);
+       settings.survey.ignore_mask_label);
 }
 
 // Adds `steps` to one of the numbers.

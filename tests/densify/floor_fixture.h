@@ -46,8 +46,8 @@ class FloorTest : public testing::Test {
     for (int y = 4; y < 120; y += 7)
       for (int x = 4; x < 160; x += 7) add_point(scene, x, y);
     points_ = scene.points.size();
-    settings_.input = folder_ / "scene.mvs";
-    io::write_mvs(settings_.input, scene, folder_);
+    settings_.survey.files.scene = folder_ / "scene.mvs";
+    io::write_mvs(settings_.survey.files.scene, scene, folder_);
     use_folder("out");
   }
 
@@ -66,13 +66,13 @@ class FloorTest : public testing::Test {
   }
 
   void use_folder(const std::string& name) {
-    settings_.working_folder = folder_ / name;
+    settings_.survey.files.working_folder = folder_ / name;
     settings_.output = folder_ / name / "dense.mvs";
-    std::filesystem::create_directories(settings_.working_folder);
+    std::filesystem::create_directories(settings_.survey.files.working_folder);
   }
 
   std::filesystem::path map(int image) const {
-    return settings_.working_folder / ("depth000" + std::to_string(image) + ".dmap");
+    return settings_.survey.files.working_folder / ("depth000" + std::to_string(image) + ".dmap");
   }
 
   const test::TexturedScene floor_{.cell = 0.04};  // three pixels

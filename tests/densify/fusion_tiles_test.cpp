@@ -53,7 +53,7 @@ class FusionTiles : public FloorTest {
 
   std::size_t tile_files() const {
     std::size_t count = 0;
-    for (const auto& entry : fs::directory_iterator(settings_.working_folder))
+    for (const auto& entry : fs::directory_iterator(settings_.survey.files.working_folder))
       count += entry.path().filename().string().find(".tile") != std::string::npos ? 1 : 0;
     return count;
   }
@@ -82,7 +82,7 @@ TEST_F(FusionTiles, GiveNearlyTheCloudOfOnePiece) {
 
 TEST_F(FusionTiles, MadeInAnyOrderGiveTheBytesOfOneRun) {
   settings_.fusion.errors = true;
-  settings_.report = settings_.working_folder / "report.json";
+  settings_.report = settings_.survey.files.working_folder / "report.json";
   const auto counts = [&] {  // the rest depends on whether the run made the maps
     const std::string report = read_file(settings_.report);
     return report.substr(report.find("\"fusion\""));
@@ -143,11 +143,11 @@ TEST_F(FusionTiles, AreTheSameForAnyThreadsAndMemory) {
   const std::string expected = cloud_in(4);
   EXPECT_EQ(cloud_in(4, 1), expected);
   EXPECT_EQ(cloud_in(4, 2), expected);
-  settings_.max_memory = 1;
+  settings_.survey.memory.megabytes = 1;
   const std::string refusal = test::error_of([&] { cloud_in(4); });
   const std::size_t at = refusal.find("needs ");
   ASSERT_NE(at, std::string::npos) << refusal;
-  settings_.max_memory = std::stoull(refusal.substr(at + 6));
+  settings_.survey.memory.megabytes = std::stoull(refusal.substr(at + 6));
   EXPECT_EQ(cloud_in(4), expected);
 }
 

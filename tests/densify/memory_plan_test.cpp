@@ -12,13 +12,13 @@
 #include "base/parallel.h"
 #include "cloud/fuse.h"
 #include "densify/agreement_check.h"
-#include "densify/image_store.h"
 #include "densify/pinhole_export.h"
 #include "depth/filters.h"
 #include "depth/patch_match.h"
 #include "io/openmvs/dmap.h"
 #include "io/openmvs/mvs_counts.h"
 #include "support/error_of.h"
+#include "survey/image_store.h"
 
 namespace axial::densify {
 namespace {
@@ -38,7 +38,7 @@ Project sixty_images() {
     View view;
     view.camera.width = i == 0 ? 600 : 1200;
     view.camera.height = i == 0 ? 450 : 900;
-    view.file.size = {2 * view.camera.width, 2 * view.camera.height};
+    view.header.size = {2 * view.camera.width, 2 * view.camera.height};
     project.views.push_back(view);
     project.references.push_back(i);
   }
@@ -71,7 +71,7 @@ class Held {
         view_(from.project.views.back()) {}
 
   std::uint64_t images() const {
-    return plan_.cached_images * bytes_needed(WorkImageSize{kPixels, masks_, colors_});
+    return plan_.cached_images * survey::bytes_needed(survey::PixelsSize{kPixels, masks_, colors_});
   }
   // All depths that a geometric pass reads are in the cache, unless it is smaller than that.
   std::uint64_t matching() const {
@@ -89,7 +89,7 @@ class Held {
            plan_.in_flight * io::dmap_bytes_needed(kPixels);
   }
   std::uint64_t decoding() const {
-    return images() + plan_.decodes * (decode() + bytes_needed({kPixels, masks_, colors_}));
+    return images() + plan_.decodes * (decode() + survey::bytes_needed({kPixels, masks_, colors_}));
   }
   std::uint64_t fusing() const {
     return images() +
@@ -106,7 +106,7 @@ class Held {
 
  private:
   std::uint64_t decode() const {
-    return bytes_needed_to_load(io::bytes_needed(view_.file), kPixels);
+    return survey::bytes_needed_to_load(io::bytes_needed(view_.header), kPixels);
   }
 
   MemoryPlan plan_;
@@ -119,8 +119,9 @@ TEST(StageBytes, AreThoseOfTheStagesForTheLargestImageAndTheLongestLists) {
   const StageBytes bytes = all.bytes();
   EXPECT_EQ(bytes.match, depth::bytes_needed(depth::MatchSize{kPixels, kSources}));
   EXPECT_EQ(bytes.adjust, depth::bytes_needed(depth::AdjustSize{kPixels, kAdjusting}));
-  EXPECT_EQ(bytes.image, bytes_needed(WorkImageSize{kPixels, false, true}));
-  EXPECT_EQ(bytes.decode, bytes_needed_to_load(16 * kPixels, kPixels));  // 2 x 2 of 4 bytes each
+  EXPECT_EQ(bytes.image, survey::bytes_needed(survey::PixelsSize{kPixels, false, true}));
+  EXPECT_EQ(bytes.decode,
+            survey::bytes_needed_to_load(16 * kPixels, kPixels));  // 2 x 2 of 4 bytes each
   EXPECT_EQ(bytes.exported, bytes_needed_to_resample(all.project.views.back()));
   EXPECT_EQ(bytes.write_scene, io::count_scene(all.project.scene).writing_bytes());
   EXPECT_EQ(bytes.taken + 7 * bytes.fused, cloud::bytes_needed({kPixels, kImages, 7, true}));
@@ -138,7 +139,7 @@ TEST(StageBytes, DependOnWhatTheSettingsAskFor) {
   few.project.views[3].mask = "mask.png";
   EXPECT_EQ(few.bytes().adjust, 0u);
   EXPECT_EQ(few.bytes().exported, 0u);
-  EXPECT_EQ(few.bytes().image, bytes_needed(WorkImageSize{kPixels, true, false}));
+  EXPECT_EQ(few.bytes().image, survey::bytes_needed(survey::PixelsSize{kPixels, true, false}));
   EXPECT_EQ(few.bytes().fused, cloud::bytes_needed({kPixels, 0, 1, false}));
   // Fewer maps than neighbours.
   few.project.references = {0, 4, 5};
@@ -222,15 +223,15 @@ TEST(MemoryPlan, MoreRoomAndThreadsHaveLimits) {
 TEST(MemoryPlan, RefusesLessThanTheLeastAndNamesIt) {
   Case from;
   const ThreadLimit one(1);
-  from.settings.max_memory = 100;
+  from.settings.survey.memory.megabytes = 100;
   const std::string error = test::error_of([&] { plan_memory(from.project, from.settings); });
   EXPECT_THAT(error,
               testing::StartsWith("max_memory 100: 100 MB are too little, this scene needs "));
   const std::uint64_t needed = std::stoull(error.substr(error.find("needs ") + 6));
   // The need contains what the process has allocated, which may differ a little at the next call.
-  from.settings.max_memory = needed + 1;
+  from.settings.survey.memory.megabytes = needed + 1;
   EXPECT_EQ(plan_memory(from.project, from.settings).in_flight, 1u);
-  from.settings.max_memory = needed - 2;
+  from.settings.survey.memory.megabytes = needed - 2;
   EXPECT_THAT(test::error_of([&] { plan_memory(from.project, from.settings); }),
               testing::HasSubstr("are too little"));
 }

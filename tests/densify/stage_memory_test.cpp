@@ -11,13 +11,14 @@
 
 #include "base/memory.h"
 #include "cloud/fusion_map.h"
-#include "densify/image_store.h"
+#include "densify/project.h"
 #include "depth/filters.h"
 #include "depth/patch_match.h"
 #include "io/images/image.h"
 #include "io/openmvs/dmap.h"
 #include "support/analytic_scene.h"
 #include "support/empty_folder.h"
+#include "survey/image_store.h"
 
 namespace axial::densify {
 namespace {
@@ -31,21 +32,20 @@ std::uint64_t bytes_of(const std::vector<cv::Mat>& images) {
 TEST(StageMemory, OfImagesAndMapsIsExact) {
   const auto folder = test::empty_folder();
   Project project;
-  project.scene.images.resize(1);
-  project.scene.images[0].path = (folder / "image.png").string();
   io::write_png(folder / "image.png", cv::Mat3b(72, 96, cv::Vec3b(10, 20, 30)));
   io::write_png(folder / "mask.png", cv::Mat1b(72, 96, uchar{1}));
+  project.options.ignore_mask_label = 0;
   project.views.resize(1);
+  project.views[0].file = folder / "image.png";
   project.views[0].camera = test::dry_camera();
-  project.views[0].file = io::read_image_header(folder / "image.png");
+  project.views[0].header = io::read_image_header(folder / "image.png");
   for (const bool mask : {false, true})
     for (const bool color : {false, true}) {
       Settings settings;
       settings.estimate_colors = color ? 2 : 0;
-      settings.ignore_mask_label = 0;
       project.views[0].mask = mask ? folder / "mask.png" : std::filesystem::path();
-      const auto image = ImageStore(project, settings, 1).get(0);
-      EXPECT_EQ(bytes_needed(WorkImageSize{72 * 96, mask, color}),
+      const auto image = survey::ImageStore(project, channels_of(settings), 1).get(0);
+      EXPECT_EQ(survey::bytes_needed(survey::PixelsSize{72 * 96, mask, color}),
                 bytes_of({image->grey, image->color, image->mask}));
     }
   const DepthMap map = test::exact_map({}, test::dry_camera(), {});

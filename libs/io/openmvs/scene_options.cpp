@@ -9,8 +9,11 @@ namespace axial::io {
 namespace {
 
 constexpr SettingName kSceneOptions[] = {{"allow_missing", "--allow-missing"},
+                                         {"bit_depth", "--bit-depth"},
                                          {"camera is flat_port", "--camera-model is flatport"},
                                          {"housing", "--housing"},
+                                         {"ignore_mask_label", "--ignore-mask-label"},
+                                         {"mask_folder", "--mask-path"},
                                          {"refractive", "--refractive"}};
 
 std::string scene_option(std::string_view setting) {

@@ -9,9 +9,9 @@
 
 int main(int, char** argv) try {
   axial::densify::Settings settings;
-  settings.input = std::filesystem::absolute(argv[1]);
-  settings.working_folder = std::filesystem::absolute(argv[2]);
-  settings.output = settings.working_folder / "dense.mvs";
+  settings.survey.files.scene = std::filesystem::absolute(argv[1]);
+  settings.survey.files.working_folder = std::filesystem::absolute(argv[2]);
+  settings.output = settings.survey.files.working_folder / "dense.mvs";
   const axial::densify::Report report = axial::densify::densify(settings);
   std::printf("%zu points in %s\n", report.points, report.cloud.c_str());
 } catch (const std::exception& error) {

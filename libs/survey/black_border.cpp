@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "texture/black_border.h"
+#include "survey/black_border.h"
 
 #include <opencv2/imgproc.hpp>
 
-namespace axial::texture {
+namespace axial::survey {
 
 cv::Mat1b outside_black_border(const cv::Mat3b& image, int darkest, int margin) {
   constexpr std::uint8_t kDarkPixel = 1, kBorderPixel = 2;
@@ -27,4 +27,4 @@ cv::Mat1b outside_black_border(const cv::Mat3b& image, int darkest, int margin) 
   return usable;
 }
 
-}  // namespace axial::texture
+}  // namespace axial::survey

@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace axial::texture {
+namespace axial::survey {
 
 // Returns an image of the size of `image` that is 0 at the pixels of black borders and 255
 // elsewhere. Returns an empty image if there is no black border. Precondition: `image` is not
@@ -14,4 +14,4 @@ namespace axial::texture {
 //     these dark pixels, because resampling and compression mix colours there.
 cv::Mat1b outside_black_border(const cv::Mat3b& image, int darkest = 4, int margin = 3);
 
-}  // namespace axial::texture
+}  // namespace axial::survey

@@ -11,13 +11,13 @@
 #include "scene/any_camera.h"
 #include "scene/scene.h"
 
-namespace axial::belong {
+namespace axial {
 
 // The exact cameras of the images of a scene, made when they are first needed.
-class Cameras {
+class SceneCameras {
  public:
   // `scene` must outlive the object.
-  explicit Cameras(const Scene& scene) : scene_(&scene) {}
+  explicit SceneCameras(const Scene& scene) : scene_(&scene) {}
 
   // The camera of a calibrated image.
   const AnyCamera<double>& of(std::uint32_t image);
@@ -46,11 +46,11 @@ struct SparsePlace {
 // Returns about `most` of the sparse points, spread evenly over their list. Points are left out
 // that are not finite, or that fewer than two calibrated images see inside of their rectangles. At
 // most `most_sights` sights of each point are taken, spread evenly.
-std::vector<SparsePlace> spread_places(const Scene& scene, Cameras& cameras, std::size_t most,
+std::vector<SparsePlace> spread_places(const Scene& scene, SceneCameras& cameras, std::size_t most,
                                        std::size_t most_sights);
 
 // `count` indices, or all if there are fewer, spread evenly over 0 to `size` - 1, in ascending
 // order.
 std::vector<std::size_t> spread_indices(std::size_t size, std::size_t count);
 
-}  // namespace axial::belong
+}  // namespace axial

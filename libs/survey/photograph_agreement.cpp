@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "belong/photograph_agreement.h"
+#include "survey/photograph_agreement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "base/order_statistics.h"
 
-namespace axial::belong {
+namespace axial::survey {
 namespace {
 
 constexpr std::size_t kMostSampledPlaces = 8000, kMostSightsOfPlace = 8;
@@ -38,7 +38,7 @@ double correlation(const std::vector<std::array<double, 2>>& pairs) {
 }  // namespace
 
 PhotographSamples::PhotographSamples(const Scene& scene) : images_(scene.images.size()) {
-  Cameras cameras(scene);
+  SceneCameras cameras(scene);
   std::uint32_t number = 0;
   for (const SparsePlace& place :
        spread_places(scene, cameras, kMostSampledPlaces, kMostSightsOfPlace)) {
@@ -110,4 +110,4 @@ std::vector<PhotographFacts> PhotographSamples::facts() const {
   return result;
 }
 
-}  // namespace axial::belong
+}  // namespace axial::survey

@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "belong/sparse_places.h"
+#include "scene/sparse_places.h"
 #include "scene/scene.h"
 
-namespace axial::belong {
+namespace axial::survey {
 
 // What is known of the photograph of an image.
 struct PhotographFacts {
@@ -59,4 +59,4 @@ class PhotographSamples {
   std::mutex mutex_;
 };
 
-}  // namespace axial::belong
+}  // namespace axial::survey

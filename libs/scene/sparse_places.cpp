@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "belong/sparse_places.h"
+#include "scene/sparse_places.h"
 
-namespace axial::belong {
+namespace axial {
 
-const AnyCamera<double>& Cameras::of(std::uint32_t image) {
+const AnyCamera<double>& SceneCameras::of(std::uint32_t image) {
   const auto found = cameras_.find(image);
   if (found != cameras_.end()) return found->second;
   return cameras_
@@ -11,7 +11,8 @@ const AnyCamera<double>& Cameras::of(std::uint32_t image) {
       .first->second;
 }
 
-std::optional<Eigen::Vector2d> Cameras::pixel(std::uint32_t image, const Eigen::Vector3d& point) {
+std::optional<Eigen::Vector2d> SceneCameras::pixel(std::uint32_t image,
+                                                   const Eigen::Vector3d& point) {
   if (image >= scene_->images.size()) return {};
   const SceneImage& seen_in = scene_->images[image];
   if (!seen_in.calibrated) return {};
@@ -32,7 +33,7 @@ std::vector<std::size_t> spread_indices(std::size_t size, std::size_t count) {
   return indices;
 }
 
-std::vector<SparsePlace> spread_places(const Scene& scene, Cameras& cameras, std::size_t most,
+std::vector<SparsePlace> spread_places(const Scene& scene, SceneCameras& cameras, std::size_t most,
                                        std::size_t most_sights) {
   std::vector<SparsePlace> places;
   for (const std::size_t i : spread_indices(scene.points.size(), most)) {
@@ -50,4 +51,4 @@ std::vector<SparsePlace> spread_places(const Scene& scene, Cameras& cameras, std
   return places;
 }
 
-}  // namespace axial::belong
+}  // namespace axial

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "belong/photograph_check.h"
+#include "survey/photograph_check.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,10 +7,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/log.h"
-#include "hilly_scene.h"
+#include "belong/hilly_scene.h"
 #include "support/error_of.h"
 
-namespace axial::belong {
+namespace axial::survey {
 namespace {
 
 using test::hilly_scene;
@@ -79,4 +79,4 @@ TEST_F(PhotographCheckTest, SaysNothingWithoutSparsePoints) {
 }
 
 }  // namespace
-}  // namespace axial::belong
+}  // namespace axial::survey

@@ -6,10 +6,10 @@
 #include <span>
 #include <string>
 
-#include "belong/photograph_agreement.h"
 #include "scene/scene.h"
+#include "survey/photograph_agreement.h"
 
-namespace axial::belong {
+namespace axial::survey {
 
 // Looks at the photographs of a scene while a program reads them, and then reports the photographs
 // that do not belong to it.
@@ -39,4 +39,4 @@ class PhotographCheck {
   std::vector<std::string> names_;
 };
 
-}  // namespace axial::belong
+}  // namespace axial::survey

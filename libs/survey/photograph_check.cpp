@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "belong/photograph_check.h"
+#include "survey/photograph_check.h"
 
 #include "base/error.h"
 #include "base/log.h"
 
-namespace axial::belong {
+namespace axial::survey {
 namespace {
 
 constexpr std::size_t kEnoughSamples = 100;  // a correlation by chance is then 0 +- 0.1
@@ -56,4 +56,4 @@ void PhotographCheck::report() const {
     if (is_foreign(all[i])) warn_of(names_[i], all[i]);
 }
 
-}  // namespace axial::belong
+}  // namespace axial::survey

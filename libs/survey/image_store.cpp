@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "survey/image_store.h"
+
+#include <vector>
+
+#include "base/first_error.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+
+namespace axial::survey {
+
+std::uint64_t bytes_needed(const PixelsSize& size) {
+  return (1 + (size.mask ? 1 : 0) + (size.color ? 3 : 0)) * size.pixels;
+}
+
+std::uint64_t bytes_needed_to_load(std::uint64_t decode, std::uint64_t pixels) {
+  // Colours and grey levels at the working resolution.
+  return decode + (3 + 1) * pixels;
+}
+
+ImageStore::ImageStore(const Survey& survey, Channels channels, std::size_t capacity)
+    : photographs_(survey),
+      cache_([this, channels](std::size_t view) { return photographs_.read(view, channels); },
+             capacity) {}
+
+cv::Mat1b ImageStore::mask(std::size_t view) {
+  const Survey& survey = photographs_.survey();
+  const bool masked = survey.views[view].masked() || survey.options.ignore_black_border;
+  return masked ? get(view)->mask : cv::Mat1b();
+}
+
+void ImageStore::check_all(std::size_t at_once) {
+  std::vector<std::size_t> views;
+  const std::vector<View>& all = photographs_.survey().views;
+  for (std::size_t v = 0; v < all.size(); ++v)
+    if (!all[v].file.empty()) views.push_back(v);
+  check(views, at_once);
+  photographs_.check_labels();
+}
+
+void ImageStore::check(std::span<const std::size_t> views, std::size_t at_once) {
+  const std::size_t count = views.size();
+  ProgressCounter counter(console_progress("Read images"), count);
+  FirstError error;
+  for_each_in_flight(count, at_once, [&](std::size_t i) {
+    const std::size_t view = views[count - 1 - i];
+    error.run(view, [&] { get(view); });
+    counter.add();
+  });
+  error.rethrow();
+}
+
+}  // namespace axial::survey

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "survey/photographs.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "io/images/image.h"
+#include "scene/resolution.h"
+#include "survey/black_border.h"
+
+namespace axial::survey {
+namespace {
+
+cv::Size size_of(const View& view) {
+  return {view.camera.width, view.camera.height};
+}
+
+void leave_out(const cv::Mat1b& mask, cv::Mat1b& usable) {
+  if (mask.empty()) return;
+  if (usable.empty())
+    usable = mask;
+  else
+    cv::bitwise_and(mask, usable, usable);
+}
+
+cv::Mat1b without_label(const View& view, int ignored_label, LabelCheck* check) {
+  const cv::Mat1w labels = io::read_label_image(view.mask);
+  if (check) check->add(labels);
+  io::check_mask_shape(view.mask, labels.size(), view.header.size);
+  cv::Mat1b mask;
+  cv::compare(resized_labels(labels, size_of(view)), ignored_label, mask, cv::CMP_NE);
+  return mask;
+}
+
+// Resampling mixes colours of transparent pixels into pixels at their edge: leaves these out, too.
+cv::Mat1b opaque_at(const cv::Mat1b& opaque, cv::Size size) {
+  if (opaque.empty()) return {};
+  cv::Mat1b resized;
+  cv::resize(opaque, resized, size, 0, 0, cv::INTER_AREA);
+  cv::compare(resized, 255, resized, cv::CMP_EQ);
+  return resized;
+}
+
+}  // namespace
+
+cv::Mat1b working_mask(const View& view, const cv::Mat1b& opaque, int ignored_label,
+                       LabelCheck* check) {
+  cv::Mat1b mask;
+  if (!view.mask.empty()) mask = without_label(view, ignored_label, check);
+  leave_out(opaque_at(opaque, size_of(view)), mask);
+  return mask;
+}
+
+Photographs::Photographs(const Survey& survey)
+    : survey_(survey),
+      labels_(survey.options.ignore_mask_label, survey.options.files.name_of("ignore_mask_label")) {
+}
+
+Pixels Photographs::read(std::size_t view, Channels channels) const {
+  const View& from = survey_.views[view];
+  const Options& options = survey_.options;
+  Pixels result;
+  io::Photograph photograph = io::read_photograph(from.file);
+  result.color = resized_image(io::in_8_bits(photograph.pixels, survey_.bit_depth), size_of(from));
+  photograph.pixels.release();
+  if (channels != Channels::color) cv::cvtColor(result.color, result.grey, cv::COLOR_BGR2GRAY);
+  if (survey_.photograph_check && channels == Channels::color)
+    survey_.photograph_check->take(from.image, result.color);
+  else if (survey_.photograph_check)
+    survey_.photograph_check->take(from.image, result.grey);
+  cv::Mat1b inside;
+  if (options.ignore_black_border) inside = outside_black_border(result.color);
+  if (channels == Channels::grey) result.color.release();
+  result.mask = working_mask(from, photograph.opaque, options.ignore_mask_label, &labels_);
+  leave_out(inside, result.mask);
+  return result;
+}
+
+std::uint64_t Photographs::bytes_to_read_color() const {
+  std::uint64_t largest = 0;
+  for (const View& view : survey_.views) {
+    const io::ImageHeader& header = view.header;
+    const auto stored = static_cast<std::uint64_t>(header.size.width) *
+                        static_cast<std::uint64_t>(header.size.height);
+    // While the photograph is decoded and converted to 8 bits; while its black border is found, or
+    // while its labels are decoded and resized.
+    const std::uint64_t decoded = io::bytes_needed(header) + (header.bits > 8 ? 3 * stored : 0);
+    const std::uint64_t marked = 4 * view.pixels() + (view.mask.empty() ? 0 : 6 * stored);
+    largest = std::max(largest, 4 * view.pixels() + std::max(decoded, marked));
+  }
+  return largest;
+}
+
+void Photographs::report() const {
+  check_labels();
+  if (survey_.photograph_check) survey_.photograph_check->report();
+}
+
+}  // namespace axial::survey

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The photographs of a survey, as texturing reads them.
+#pragma once
+
+#include "survey/photographs.h"
+#include "texture/views.h"
+
+namespace axial::texture {
+
+// Reads the photographs in colours. `photographs` must outlive the result. An Error of the result
+// names the file of the photograph or mask (already_named() in base/naming.h).
+ImageSource source_of(const survey::Photographs& photographs);
+
+}  // namespace axial::texture

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene of three images in a folder, of which the second is not calibrated.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "io/images/image.h"
+#include "io/openmvs/mvs.h"
+#include "support/analytic_scene.h"
+#include "support/empty_folder.h"
+#include "survey/options.h"
+
+namespace axial::test {
+
+namespace fs = std::filesystem;
+
+class SmallSurvey : public testing::Test {
+ protected:
+  SmallSurvey() {
+    Scene scene = scene_of(dry_camera(), circle_of_poses(3));
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      SceneImage& image = scene.images[i];
+      image.path = (folder_ / ("image" + std::to_string(i) + ".png")).string();
+      image.id = 10 + i;
+      write_photograph("image" + std::to_string(i) + ".png", cv::Vec3b(30, 60, 90));
+    }
+    scene.images[1].calibrated = false;
+    options_.files.scene = folder_ / "scene.mvs";
+    options_.files.working_folder = folder_;
+    io::write_mvs(options_.files.scene, scene, folder_);
+  }
+
+  // Writes a photograph of one colour (B G R), of the size of the cameras.
+  void write_photograph(const std::string& name, const cv::Vec3b& color) const {
+    io::write_png(folder_ / name, cv::Mat3b(kSize, color));
+  }
+
+  // Writes a mask with the label 0 in its left half, and `label` in its right half.
+  void write_mask(const std::string& name, std::uint8_t label) const {
+    cv::Mat1b mask(kSize, std::uint8_t{0});
+    mask.colRange(kSize.width / 2, kSize.width).setTo(label);
+    io::write_png(folder_ / name, mask);
+  }
+
+  static inline const cv::Size kSize{dry_camera().width, dry_camera().height};
+  const fs::path folder_ = empty_folder();
+  survey::Options options_;
+};
+
+}  // namespace axial::test
