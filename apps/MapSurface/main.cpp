@@ -121,21 +121,13 @@ std::vector<Eigen::Vector3d> centres_of(const std::vector<texture::View>& views)
   return centres;
 }
 
-std::vector<map::Photo> photos_of(const std::vector<texture::View>& views) {
-  std::vector<map::Photo> photos;
-  photos.reserve(views.size());
-  for (const texture::View& view : views) photos.push_back({view.camera, view.pose});
-  return photos;
-}
-
 // Prepares the mesh: removes stray faces, and turns a mesh that is inside out, because the sides
 // that the cameras see are those to map. Returns the direction from which they are seen
 // (geometry::SeenPart::facing).
 Eigen::Vector3d keep_seen_part(const Settings& settings, const std::vector<texture::View>& views,
                                TexturedMesh& mesh) {
   memory_of(settings).require(geometry::bytes_of_sights(mesh.mesh), "what the cameras see");
-  const geometry::SeenPart part =
-      geometry::find_seen_part(mesh.mesh, geometry::posed_cameras(views));
+  const geometry::SeenPart part = geometry::find_seen_part(mesh.mesh, views);
   geometry::warn_if_inside_out(part, settings.mesh);
   geometry::warn_of_strays(part, settings.mesh, mesh.mesh.faces.size());
   geometry::erase_at(part.strays, mesh.mesh.faces);
@@ -182,7 +174,7 @@ double pixel_of(const Settings& settings, const Mesh& mesh,
                 const std::vector<texture::View>& views) {
   if (settings.pixel > 0) return settings.pixel;
   memory_of(settings).require(map::bytes_of_pixel_width(mesh), "the width of a pixel");
-  return map::rounded_width(map::median_pixel_width(mesh, photos_of(views)));
+  return map::rounded_width(map::median_pixel_width(mesh, views));
 }
 
 // Warns if the code names a reference system, although the scene lies near the origin of its
@@ -347,7 +339,7 @@ int run(int argc, char** argv) {
     keep_inputs(settings, photographs);
     std::optional<map::HeightErrors> errors;
     if (settings.image_noise > 0)
-      errors.emplace(photos_of(views), place.frame.axes.row(2).transpose(), settings.image_noise);
+      errors.emplace(views, place.frame.axes.row(2).transpose(), settings.image_noise);
     FaceFacts facts;
     if (mesh.textures.empty())
       mesh = textured(std::move(mesh), settings, photographs, errors, facts);

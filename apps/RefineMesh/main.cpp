@@ -72,8 +72,8 @@ Mesh read_mesh(const Options& options, const LocalFrame& frame, bool& has_marks)
   return naming(options.mesh, [&] { return mesh::clean(mesh, fewer); });
 }
 
-std::vector<refine::View> views_of(const densify::Project& project) {
-  std::vector<refine::View> views;
+std::vector<geometry::PosedCamera> views_of(const densify::Project& project) {
+  std::vector<geometry::PosedCamera> views;
   for (const densify::View& view : project.views) views.push_back({view.camera, view.pose});
   return views;
 }

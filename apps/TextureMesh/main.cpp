@@ -170,9 +170,7 @@ void check_sides(const Settings& settings, const texture::Photographs& photograp
   memory_of(settings).require(geometry::bytes_of_sights(mesh), "what the cameras see");
   naming(settings.mesh, [&] {
     geometry::warn_if_inside_out(
-        geometry::find_seen_part(mesh, geometry::posed_cameras(photographs.views()),
-                                 {.strays = false}),
-        settings.mesh);
+        geometry::find_seen_part(mesh, photographs.views(), {.strays = false}), settings.mesh);
   });
   return_freed_memory();
 }
