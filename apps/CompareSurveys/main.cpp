@@ -75,9 +75,9 @@ struct MeshFile {
 };
 
 // The photographs of a survey, in the frame of the meshes. None without a scene.
-std::vector<map::Photo> read_photos(const Settings& settings, const fs::path& path,
-                                    const LocalFrame& frame, const MeshFile& survey) {
-  std::vector<map::Photo> photos;
+std::vector<geometry::PosedCamera> read_photos(const Settings& settings, const fs::path& path,
+                                               const LocalFrame& frame, const MeshFile& survey) {
+  std::vector<geometry::PosedCamera> photos;
   if (path.empty()) return photos;
   survey::Options options;
   options.files.scene = path;
@@ -85,8 +85,7 @@ std::vector<map::Photo> read_photos(const Settings& settings, const fs::path& pa
   options.memory = settings.compare.memory;
   survey::Survey scene = survey::open_scene(options);
   enter(LocalFrame{frame.origin - scene.frame.origin}, scene.scene);
-  for (const SceneImage& image : scene.scene.images)
-    if (image.calibrated) photos.push_back({image.camera, image.pose});
+  photos = geometry::posed_cameras(scene.scene);
   if (photos.empty()) fail("{}: has no calibrated image", path.string());
   belong::check_surface(scene.scene, belong::shape_of(survey.mesh), {survey.path, path});
   return photos;
@@ -126,12 +125,12 @@ struct NearSide {
 
 // Removes stray faces of the survey if its photographs are known.
 NearSide near_side(const Settings& settings, const fs::path& path,
-                   const std::vector<map::Photo>& photos, Mesh& mesh) {
+                   const std::vector<geometry::PosedCamera>& photos, Mesh& mesh) {
   return naming(path, [&]() -> NearSide {
     const Eigen::Vector3d turned = compare::mean_normal(mesh);
     if (photos.empty()) return {path, false, turned};
     settings.compare.memory.require(geometry::bytes_of_sights(mesh), "what the cameras see");
-    const geometry::SeenPart part = geometry::find_seen_part(mesh, geometry::posed_cameras(photos));
+    const geometry::SeenPart part = geometry::find_seen_part(mesh, photos);
     geometry::warn_if_inside_out(part, path);
     geometry::warn_of_strays(part, path, mesh.faces.size());
     geometry::erase_at(part.strays, mesh.faces);

@@ -109,7 +109,7 @@ Eigen::Vector3d keep_seen_part(const Settings& settings, const survey::Survey& s
                                TexturedMesh& mesh) {
   settings.survey.memory.require(geometry::bytes_of_sights(mesh.mesh), "what the cameras see");
   const geometry::SeenPart part =
-      geometry::find_seen_part(mesh.mesh, survey::cameras_of<geometry::PosedCamera>(survey));
+      geometry::find_seen_part(mesh.mesh, survey::posed_cameras(survey));
   geometry::warn_if_inside_out(part, settings.mesh);
   geometry::warn_of_strays(part, settings.mesh, mesh.mesh.faces.size());
   geometry::erase_at(part.strays, mesh.mesh.faces);
@@ -154,7 +154,7 @@ void require_resolved(const map::MapGrid& grid, const survey::Survey& survey) {
 double pixel_of(const Settings& settings, const Mesh& mesh, const survey::Survey& survey) {
   if (settings.pixel > 0) return settings.pixel;
   settings.survey.memory.require(map::bytes_of_pixel_width(mesh), "the width of a pixel");
-  return map::rounded_width(map::median_pixel_width(mesh, survey::cameras_of<map::Photo>(survey)));
+  return map::rounded_width(map::median_pixel_width(mesh, survey::posed_cameras(survey)));
 }
 
 // Warns if the code names a reference system, although the scene lies near the origin of its
@@ -244,7 +244,7 @@ FaceFacts look_at_faces(const Mesh& mesh, const Settings& settings,
                         const survey::Photographs& photographs,
                         const std::optional<map::HeightErrors>& errors) {
   const texture::FaceViews seen = texture::find_face_views(
-      mesh, survey::cameras_of<texture::View>(photographs.survey()),
+      mesh, survey::posed_cameras(photographs.survey()),
       texture::source_of(photographs), {}, console_progress("Numbers of views"),
       {texture::Budget(left_for_views(mesh, settings), option_of),
        photographs.bytes_to_read_color()});
@@ -263,7 +263,7 @@ TexturedMesh textured(TexturedMesh mesh, const Settings& settings,
     facts = facts_of(split, seen, errors);
   };
   TexturedMesh result = texture::texture_mesh(
-      std::move(mesh.mesh), survey::cameras_of<texture::View>(photographs.survey()),
+      std::move(mesh.mesh), survey::posed_cameras(photographs.survey()),
       texture::source_of(photographs), options, nullptr,
       [](const std::string& stage) { return console_progress(stage); });
   return_freed_memory();
@@ -315,7 +315,7 @@ int run(int argc, char** argv) {
     survey.keep_inputs(map_files(settings).all(), "--output-file");
     std::optional<map::HeightErrors> errors;
     if (settings.image_noise > 0)
-      errors.emplace(survey::cameras_of<map::Photo>(survey), place.frame.axes.row(2).transpose(),
+      errors.emplace(survey::posed_cameras(survey), place.frame.axes.row(2).transpose(),
                      settings.image_noise);
     FaceFacts facts;
     if (mesh.textures.empty())

@@ -83,7 +83,7 @@ Mesh without_unseen(Mesh mesh, const io::SceneWithCameras& scene, const Options&
         mesh::some_positions(source_of(scene, options), mesh::enough_points(mesh.faces.size()));
   unseen.points = points;
   return naming(source, [&] {
-    return mesh::treat_unseen(std::move(mesh), mesh::cameras_of(scene.scene), unseen,
+    return mesh::treat_unseen(std::move(mesh), geometry::posed_cameras(scene.scene), unseen,
                               console_progress("Looked"));
   });
 }

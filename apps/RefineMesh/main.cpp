@@ -110,7 +110,7 @@ Mesh refine_mesh(Mesh mesh, const survey::Survey& survey, const Options& options
   settings.bytes_afterwards = mesh::bytes_to_clean(1);
   naming(options.mesh, [&] {
     refine::refine(
-        state, survey::cameras_of<refine::View>(survey),
+        state, survey::posed_cameras(survey),
         [&](std::size_t view) {
           const auto image = images.get(view);
           return refine::Picture{image->grey, image->mask};
@@ -144,7 +144,7 @@ Mesh without_unseen(Mesh mesh, const survey::Survey& survey, bool keep) {
   unseen.keep = keep;
   const std::vector<Eigen::Vector3f> points = points_of(survey, mesh.faces.size());
   unseen.points = points;
-  return mesh::treat_unseen(std::move(mesh), survey::cameras_of<geometry::PosedCamera>(survey),
+  return mesh::treat_unseen(std::move(mesh), survey::posed_cameras(survey),
                             unseen, console_progress("Looked"));
 }
 

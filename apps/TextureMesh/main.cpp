@@ -119,7 +119,7 @@ void texture_and_write(const Settings& settings, const survey::Survey& survey, M
   Written written;
   naming(settings.mesh, [&] {
     texture::texture_tiles(
-        std::move(mesh), survey::cameras_of<texture::View>(survey), texture::source_of(photographs),
+        std::move(mesh), survey::posed_cameras(survey), texture::source_of(photographs),
         options,
         [&](std::size_t tile, const TexturedMesh& textured) {
           return_freed_memory();
@@ -139,7 +139,7 @@ void check_sides(const Settings& settings, const survey::Survey& survey, const M
   settings.survey.memory.require(geometry::bytes_of_sights(mesh), "what the cameras see");
   naming(settings.mesh, [&] {
     geometry::warn_if_inside_out(
-        geometry::find_seen_part(mesh, survey::cameras_of<geometry::PosedCamera>(survey),
+        geometry::find_seen_part(mesh, survey::posed_cameras(survey),
                                  {.strays = false}),
         settings.mesh);
   });

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/order_statistics.h"
 #include "evaluate/topology.h"
 #include "evaluate/volume.h"
 #include "moved_mesh.h"
@@ -20,8 +21,7 @@ Eigen::Vector3d middle_of_cameras(const Scene& scene) {
     for (const SceneImage& image : scene.images)
       if (image.calibrated) values.push_back(image.pose.centre(axis));
     if (values.empty()) fail("no image is calibrated: the upper side of the ground is not known");
-    std::ranges::nth_element(values, values.begin() + std::ssize(values) / 2);
-    middle(axis) = values[values.size() / 2];
+    middle(axis) = upper_median(std::move(values));
   }
   return middle;
 }

@@ -107,9 +107,7 @@ void read_mesh(const Options& options, Contents& contents) {
 // Warns if the mesh is inside out.
 void check_sides(const Options& options, const Contents& contents) {
   if (!contents.mesh && !contents.textured) return;
-  std::vector<geometry::PosedCamera> cameras;
-  for (const SceneImage& image : contents.survey.scene.images)
-    if (image.calibrated) cameras.push_back({image.camera, image.pose});
+  const auto cameras = geometry::posed_cameras(contents.survey.scene);
   const Mesh& mesh = mesh_of(contents);
   naming(options.mesh, [&] {
     geometry::warn_if_inside_out(geometry::find_seen_part(mesh, cameras, {.strays = false}),

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/naming.h"
+#include "base/order_statistics.h"
 #include "io/colmap/colmap.h"
 #include "io/colmap/colmap_lens.h"
 #include "view/camera_data.h"
@@ -146,11 +147,10 @@ class Builder {
       depths.push_back(
           own.pose.to_camera(photographs.points[photographs.observations[i].point]).norm());
     if (depths.empty()) return;
-    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-    std::ranges::nth_element(depths, middle);
+    const double middle = upper_median(std::move(depths));
     const double shift = (scene_.frame.to_local(image.pose.centre) - own.pose.centre).norm();
     const double turn = (image.pose.rotation - own.pose.rotation).norm();
-    if (shift > kSamePose * *middle || turn > 1.5 * kSamePose)
+    if (shift > kSamePose * middle || turn > 1.5 * kSamePose)
       fail(
           "image {}: its pose differs from that in the scene by {:.3g} units and {:.3g} rad: give "
           "the model from which the scene was made",

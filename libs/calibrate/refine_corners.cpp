@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
+#include "base/order_statistics.h"
+
 namespace axial::calibrate {
 
 int window_for(double spacing) {
@@ -37,10 +39,8 @@ double asymmetry(const cv::Mat1b& photograph, int half, const Eigen::Vector2d& c
 }
 
 double hidden_above(std::span<const double> asymmetries, double least) {
-  std::vector<double> sorted(asymmetries.begin(), asymmetries.end());
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::ranges::nth_element(sorted, middle);
-  return std::max(least, 3 * *middle);
+  return std::max(least,
+                  3 * upper_median(std::vector<double>(asymmetries.begin(), asymmetries.end())));
 }
 
 }  // namespace axial::calibrate

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "scene/camera_model.h"
 
@@ -12,20 +13,11 @@ namespace {
 using Along = std::vector<Eigen::Vector3d>;  // coordinates along the axes of the tiles
 
 // The number of the point below which the share `share` of `count` points lies.
-std::size_t rank_of(double share, std::size_t count) {
-  return static_cast<std::size_t>(share * static_cast<double>(count - 1));
-}
-
 double extent(std::span<const Eigen::Vector3d> points, int axis) {
   std::vector<double> values;
   for (const Eigen::Vector3d& point : points) values.push_back(point[axis]);
-  const auto value_at = [&](std::size_t rank) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-  };
-  const double low = value_at(rank_of(0.05, values.size()));
-  return value_at(rank_of(0.95, values.size())) - low;
+  const double low = lower_quantile(values, 0.05);
+  return lower_quantile(std::move(values), 0.95) - low;
 }
 
 int longest_axis(std::span<const Eigen::Vector3d> points) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/order_statistics.h"
 #include "compare/height_map.h"
 
 namespace axial::compare {
@@ -122,7 +123,7 @@ class Search {
     std::vector<double> differences;
     differences.reserve(reached_.size());
     for (const Pixel& p : reached_) differences.push_back(std::abs(difference(p)));
-    return median_of(differences);
+    return upper_median(std::move(differences));
   }
 
   // Adds the unseen pixels that are connected to the region in reached_, unless there are more of

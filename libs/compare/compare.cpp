@@ -9,9 +9,11 @@
 
 #include "base/error.h"
 #include "base/naming.h"
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "compare/height_map.h"
 #include "compare/visibility.h"
+#include "geometry/surface.h"
 #include "map/geotiff.h"
 #include "map/pixel_width.h"
 #include "scene/check_mesh.h"
@@ -22,9 +24,6 @@ namespace {
 // The most at the same time: height, difference, standard deviation, class and whether it is seen,
 // and a list of the pixels of one region, which grows by doubling.
 constexpr std::uint64_t kBytesPerPixel = 4 + 4 + 4 + 1 + 1 + 24;
-
-// For each face of the earlier survey, the copy and the hierarchy of geometry::Surface.
-constexpr std::uint64_t kRegistrationBytes = 160;
 
 // The standard deviation of a height is this part of the bend of the surface: meshes with vertices
 // at other places cut off other parts of edges and of furrows.
@@ -80,8 +79,8 @@ void require_memory(const Mesh& before, const Mesh& after, const map::MapFrame& 
                     const map::MapGrid& grid, const CompareOptions& options) {
   std::uint64_t mesh =
       std::max(bytes_of_height_map(before, frame, grid), bytes_of_height_map(after, frame, grid));
-  if (!options.photos.before.empty()) mesh = std::max(mesh, bytes_of_visibility(before));
-  if (!options.photos.after.empty()) mesh = std::max(mesh, bytes_of_visibility(after));
+  if (!options.photos.before.empty()) mesh = std::max(mesh, geometry::bytes_of_surface(before));
+  if (!options.photos.after.empty()) mesh = std::max(mesh, geometry::bytes_of_surface(after));
   options.memory.require(
       map::kCacheBytes + mesh + kBytesPerPixel * static_cast<std::uint64_t>(grid.pixels()),
       fmt::format("a map of {} x {} pixels", grid.columns, grid.rows));
@@ -213,10 +212,10 @@ void fill_sigma(const Maps& maps, Comparison& comparison) {
       comparison.sigma(y, x) = static_cast<float>(std::sqrt(
           noise + kOfBend * kOfBend * std::max(0.0, bend) + squared(maps.registration(y, x))));
     }
-  std::vector<double> parts = spread_values(maps.registration.size(), [&](int y, int x) {
-    return static_cast<double>(maps.registration(y, x));
-  });
-  comparison.registration_sigma = median_of(parts);
+  comparison.registration_sigma =
+      upper_median(spread_values(maps.registration.size(), [&](int y, int x) {
+        return static_cast<double>(maps.registration(y, x));
+      }));
 }
 
 // The area [m^2] that both surveys have, but that is not compared because of `unseen`.
@@ -267,7 +266,7 @@ Comparison placed(const Mesh& before, const Mesh& after, const map::MapFrame& fr
   require_memory(before, after, frame, result.grid, options);
   after_frame = frame;
   if (options.align) {
-    options.memory.require(kRegistrationBytes * before.faces.size(), "the registration");
+    options.memory.require(geometry::bytes_of_surface(before), "the registration");
     result.registration = naming(options.name_after, [&] {
       return register_surveys(before, after, frame, result.grid, options.registration,
                               sink_of(options, "Registration"));

@@ -22,7 +22,7 @@ namespace axial::compare {
 
 // The photographs of the surveys, with poses in the frame of the meshes. Empty: not known.
 struct SurveyPhotos {
-  std::vector<map::Photo> before, after;
+  std::vector<geometry::PosedCamera> before, after;
   int least = 3;  // number of photographs that must see a place of a survey
 };
 

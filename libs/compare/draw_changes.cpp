@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/order_statistics.h"
 #include "compare/height_map.h"
 #include "map/overview.h"
 
@@ -91,10 +92,8 @@ double darkest_difference(const Comparison& comparison) {
       const std::uint8_t kind = comparison.changes.classes(y, x);
       if (kind == kCame || kind == kGone) values.push_back(std::abs(comparison.difference(y, x)));
     }
-  if (values.empty()) return 0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 98 / 100);
-  std::nth_element(values.begin(), at, values.end());
-  return static_cast<double>(*at);
+  const std::size_t place = values.size() * 98 / 100;
+  return values.empty() ? 0 : static_cast<double>(value_at_place(std::move(values), place));
 }
 
 cv::Mat3b draw_changes(const Comparison& comparison, bool is_georeferenced, int longest_side) {

@@ -79,17 +79,4 @@ double bend_at(const cv::Mat1f& heights, int y, int x) {
   return bend;
 }
 
-double median_of(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-double robust_deviation(std::vector<double> values) {
-  const double median = median_of(values);
-  for (double& value : values) value = std::abs(value - median);
-  return 1.4826 * median_of(values);
-}
-
 }  // namespace axial::compare

@@ -53,12 +53,4 @@ std::vector<double> spread_values(const cv::Size& size, const ValueAt& value_at)
   return values;
 }
 
-// The median of `values`: of an even number, the upper one of the two in the middle. `values` is
-// reordered. 0 for an empty vector.
-double median_of(std::vector<double>& values);
-
-// 1.4826 times the median of the distances of `values` from their median: the standard deviation,
-// if most values have a normal distribution. 0 for an empty vector.
-double robust_deviation(std::vector<double> values);
-
 }  // namespace axial::compare

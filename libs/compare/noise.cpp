@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "compare/height_map.h"
 
@@ -41,7 +42,7 @@ Spread robust_spread(std::vector<double> values) {
   Spread spread;
   for (std::size_t before = 0; before != values.size() && !values.empty();) {
     before = values.size();
-    spread = {median_of(values), robust_deviation(values)};
+    spread = {upper_median(values), robust_deviation(values)};
     std::erase_if(values,
                   [&](double value) { return std::abs(value - spread.middle) > 3 * spread.sigma; });
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/order_statistics.h"
 #include "compare/height_map.h"
 #include "evaluate/icp.h"
 #include "geometry/surface.h"
@@ -77,7 +78,7 @@ Samples samples_of(const cv::Mat1f& before, const cv::Mat1f& after, const map::M
 void leave_out(Samples& samples, const map::MapGrid& grid, double outlier) {
   std::vector<double> residuals;
   for (const Sample& sample : samples.all) residuals.push_back(sample.residual());
-  const double median = median_of(residuals);
+  const double median = upper_median(residuals);
   samples.sigma = robust_deviation(residuals);
   // Rounding of float heights is no outlier.
   const double limit = std::max(outlier * samples.sigma, 1e-5 * grid.pixel);

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "compare/height_map.h"
 
@@ -113,7 +114,7 @@ Correlation correlation(const cv::Mat1f& a, const cv::Mat1f& b, cv::Point shift)
       if (2 * sums.n >= kWindow * kWindow) values.push_back(sums.correlation());
     }
   const std::size_t windows = values.size();
-  return {windows > 0 ? median_of(values) : 0, windows};
+  return {upper_median(std::move(values)), windows};
 }
 
 // The correlation of a relief with itself one cell away; at least 0.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "geometry/occluders.h"
+#include "geometry/surface.h"
 #include "scene/any_camera.h"
 
 namespace axial::compare {
@@ -15,8 +15,8 @@ namespace {
 class Sights {
  public:
   Sights(const SeenSurvey& survey, double slack)
-      : survey_(survey), slack_(slack), occluders_(survey.mesh) {
-    for (const map::Photo& photo : survey.photos)
+      : survey_(survey), slack_(slack), surface_(survey.mesh) {
+    for (const geometry::PosedCamera& photo : survey.photos)
       cameras_.emplace_back(make_camera<double>(photo.camera));
   }
 
@@ -31,7 +31,7 @@ class Sights {
 
  private:
   bool sees(std::size_t v, const Eigen::Vector3d& point) const {
-    const map::Photo& photo = survey_.photos[v];
+    const geometry::PosedCamera& photo = survey_.photos[v];
     refractive::Matrix23<double> jacobian;
     Eigen::Vector3d origin;  // the path of light is straight from here to the point
     const Eigen::Vector3d x = photo.pose.to_camera(point);
@@ -40,12 +40,12 @@ class Sights {
         image.pixel.y() > photo.camera.height - 2)
       return false;
     const Eigen::Vector3d from = photo.pose.to_world(origin);
-    return !occluders_.between(from, point, std::min(1.0, slack_ / (point - from).norm()));
+    return !surface_.between(from, point, 0, std::min(1.0, slack_ / (point - from).norm()));
   }
 
   const SeenSurvey& survey_;
   double slack_;
-  geometry::Occluders occluders_;
+  geometry::Surface surface_;
   std::vector<AnyCamera<double>> cameras_;
 };
 
@@ -70,11 +70,6 @@ void mark_unseen(const SeenSurvey& survey, const map::MapGrid& grid, double base
     }
     counter.add();
   });
-}
-
-std::uint64_t bytes_of_visibility(const Mesh& mesh) {
-  constexpr std::uint64_t kTreePerFace = 160;  // Embree's tree while it is built
-  return mesh.vertices.size() * sizeof(Eigen::Vector3f) + mesh.faces.size() * kTreePerFace;
 }
 
 }  // namespace axial::compare

@@ -17,7 +17,7 @@ namespace axial::compare {
 struct SeenSurvey {
   const Mesh& mesh;
   map::MapFrame frame;
-  std::span<const map::Photo> photos;
+  std::span<const geometry::PosedCamera> photos;
 };
 
 // Sets `unseen` to 255 at the pixels that too few photographs of the survey see. A photograph sees
@@ -28,12 +28,9 @@ struct SeenSurvey {
 // the other survey is higher there, at least `least` photographs must see its point, too, although
 // the mesh has no surface there: otherwise the survey does not show whether this space was free.
 // Pixels where one of the surveys has no height, and pixels that are 255 already, stay as they are.
-// `progress` counts rows.
+// `progress` counts rows. The memory besides the arguments is geometry::bytes_of_surface().
 void mark_unseen(const SeenSurvey& survey, const map::MapGrid& grid, double base,
                  const cv::Mat1f& own, const cv::Mat1f& other, int least, double slack,
                  const ProgressSink& progress, cv::Mat1b& unseen);
-
-// The memory [bytes] of mark_unseen() besides its arguments.
-std::uint64_t bytes_of_visibility(const Mesh& mesh);
 
 }  // namespace axial::compare

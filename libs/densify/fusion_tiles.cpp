@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <span>
 
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "densify/fusion_run.h"
 
@@ -33,10 +34,7 @@ std::vector<const SparsePoint*> points_to_divide(const Project& project, const S
 
 // The 95th percentile of the depths; 0 without observations.
 double large_depth(std::vector<double>& depths) {
-  if (depths.empty()) return 0;
-  const auto at = depths.begin() + static_cast<std::ptrdiff_t>((depths.size() - 1) * 19 / 20);
-  std::nth_element(depths.begin(), at, depths.end());
-  return *at;
+  return depths.empty() ? 0 : value_at_place(depths, (depths.size() - 1) * 19 / 20);
 }
 
 double margin_of(const cloud::Tile& tile, const Project& project,

@@ -8,6 +8,7 @@
 #include "base/file_extension.h"
 #include "base/first_error.h"
 #include "base/log.h"
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "cloud/pinhole_resampling.h"
@@ -71,12 +72,7 @@ class Export {
       near.push_back(project_.preparations[image].min_depth);
       far.push_back(project_.preparations[image].max_depth);
     }
-    const auto median = [](std::vector<float>& values) {
-      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-      std::ranges::nth_element(values, middle);
-      return static_cast<double>(*middle);
-    };
-    near_ = median(near), far_ = median(far);
+    near_ = upper_median(std::move(near)), far_ = upper_median(std::move(far));
   }
 
   fs::path image_file(std::size_t image) const {

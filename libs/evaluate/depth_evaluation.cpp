@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 
 namespace axial::evaluate {
@@ -80,8 +81,8 @@ std::vector<Ring> rings_of(const cv::Mat1f& error, std::size_t count) {
     }
   std::vector<Ring> result(count);
   for (std::size_t k = 0; k < count; ++k)
-    result[k] = {rings.inner(k), rings.inner(k + 1), values[k].size(), median_of(values[k]),
-                 median_of(magnitudes[k])};
+    result[k] = {rings.inner(k), rings.inner(k + 1), values[k].size(), mean_median(values[k]),
+                 mean_median(magnitudes[k])};
   return result;
 }
 
@@ -127,7 +128,7 @@ DepthEvaluation evaluate_depth(const cv::Mat1f& estimate, const cv::Mat1f& truth
   result.completeness =
       static_cast<double>(errors.size()) / static_cast<double>(result.truth_pixels);
   result.signed_mean = sum / static_cast<double>(errors.size());
-  result.signed_median = median_of(std::move(errors));
+  result.signed_median = mean_median(std::move(errors));
   result.accuracy = summarise(magnitudes);
   result.accuracy_histogram =
       histogram(magnitudes, 4 * options.tolerances.front(), options.histogram_bins);
@@ -152,7 +153,7 @@ std::vector<RelativeRing> relative_rings(std::span<const DepthEvaluation> maps, 
   for (std::size_t k = 0; k < count; ++k)
     result[k] = {static_cast<double>(k) / static_cast<double>(count),
                  static_cast<double>(k + 1) / static_cast<double>(count), values[k].size(),
-                 median_of(std::move(values[k]))};
+                 mean_median(std::move(values[k]))};
   return result;
 }
 

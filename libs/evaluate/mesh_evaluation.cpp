@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 
 namespace axial::evaluate {
@@ -53,7 +54,7 @@ NormalErrors normal_errors(std::vector<float> angles) {
         static_cast<double>(std::ranges::count_if(
             angles, [&](float angle) { return static_cast<double>(angle) <= kNormalLimits[k]; })) /
         static_cast<double>(angles.size());
-  errors.median = median_of(std::move(angles));
+  errors.median = mean_median(std::move(angles));
   return errors;
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "base/order_statistics.h"
 #include "evaluate/sampling.h"
 #include "evaluate/statistics.h"
 #include "scene/decompositions.h"
@@ -84,7 +85,8 @@ int splat_side(std::span<const Eigen::Vector3f> images, const Viewpoint& view) {
 
 std::pair<double, double> inner_range(std::vector<float> values, double percent) {
   std::sort(values.begin(), values.end());
-  return {percentile_of_sorted(values, percent), percentile_of_sorted(values, 100 - percent)};
+  return {interpolated_quantile<float>(values, percent / 100),
+          interpolated_quantile<float>(values, (100 - percent) / 100)};
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
+#include "base/order_statistics.h"
 
 namespace axial::evaluate {
 namespace {
@@ -178,7 +179,7 @@ std::array<ClassErrors, 4> errors_by_class(std::span<const ClassifiedMap> maps) 
         }
     result[k].compared_pixels = magnitudes.all.size();
     result[k].gross_pixels = magnitudes.gross();
-    result[k].median = median_of(magnitudes.all);
+    result[k].median = mean_median(magnitudes.all);
     result[k].mean = summarise(magnitudes.fine).mean;
   }
   return result;
@@ -199,7 +200,7 @@ std::vector<PhaseErrors> errors_by_phase(std::span<const ClassifiedMap> maps, st
   std::vector<PhaseErrors> result(bins);
   for (std::size_t k = 0; k < bins; ++k)
     result[k] = {static_cast<double>(k) / count, static_cast<double>(k + 1) / count,
-                 shifts[k].size(), median_of(shifts[k])};
+                 shifts[k].size(), mean_median(shifts[k])};
   return result;
 }
 

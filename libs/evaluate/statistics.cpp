@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/order_statistics.h"
+
 namespace axial::evaluate {
 namespace {
 
@@ -16,21 +18,6 @@ double fraction_within(std::span<const float> distances, double tolerance) {
 }
 
 }  // namespace
-
-double percentile_of_sorted(std::span<const float> sorted, double p) {
-  if (sorted.empty()) return 0;
-  const double at = p / 100 * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  const double part = at - static_cast<double>(below);
-  return (1 - part) * static_cast<double>(sorted[below]) +
-         part * static_cast<double>(sorted[above]);
-}
-
-double median_of(std::vector<float> values) {
-  std::sort(values.begin(), values.end());
-  return percentile_of_sorted(values, 50);
-}
 
 DistanceStatistics summarise(std::span<const float> distances) {
   DistanceStatistics result;
@@ -54,7 +41,7 @@ DistanceStatistics summarise(std::span<const float> distances) {
   result.variance = spread / count;
   result.max = static_cast<double>(sorted.back());
   for (std::size_t k = 0; k < kPercentiles.size(); ++k)
-    result.percentiles[k] = percentile_of_sorted(sorted, kPercentiles[k]);
+    result.percentiles[k] = interpolated_quantile<float>(sorted, kPercentiles[k] / 100);
   result.median = result.percentiles[0];
   return result;
 }

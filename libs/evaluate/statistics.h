@@ -24,14 +24,6 @@ struct DistanceStatistics {
 // distances. Precondition: no distance is NaN.
 DistanceStatistics summarise(std::span<const float> distances);
 
-// The p-th percentile (0 to 100) of values in ascending order, interpolated linearly between the
-// two nearest values; 0 if there are no values.
-double percentile_of_sorted(std::span<const float> sorted, double p);
-
-// The median of values in any order. Of an even number of values: the mean of the two middle
-// values. 0 if there are no values.
-double median_of(std::vector<float> values);
-
 // Numbers of values in bins of equal width over [0, upper). The unit of `upper` is that of the
 // values.
 struct Histogram {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/order_statistics.h"
 #include "scene/decompositions.h"
 
 namespace axial::evaluate {
@@ -42,12 +43,11 @@ struct Range {
 void compare_pieces(Strip& strip) {
   std::vector<std::size_t> places;
   for (const StripPiece& piece : strip.pieces) places.push_back(piece.places);
-  const auto middle = places.begin() + static_cast<std::ptrdiff_t>(places.size() / 2);
-  std::ranges::nth_element(places, middle);
+  const std::size_t middle = upper_median(std::move(places));
   Range densities;
   std::size_t points = 0, counted = 0;
   for (const StripPiece& piece : strip.pieces) {
-    if (piece.places == 0 || 2 * piece.places < *middle) continue;
+    if (piece.places == 0 || 2 * piece.places < middle) continue;
     densities.add(static_cast<double>(piece.points) / static_cast<double>(piece.places));
     points += piece.points;
     counted += piece.places;

@@ -27,7 +27,7 @@ struct Topology {
   std::size_t self_intersecting_faces = 0;  // number of faces of self_intersecting_faces()
 };
 
-// Error if a face refers to a vertex that does not exist, or if a coordinate is not finite.
+// Error if the mesh has faces and check_mesh() refuses it (scene/check_mesh.h).
 Topology topology_of(const Mesh& mesh);
 
 }  // namespace axial::evaluate

@@ -37,8 +37,8 @@ bool sees(const Camera& camera, const View& view, const geometry::Surface* surfa
   const bool inside = image.visible && image.pixel.x() >= -0.5 && image.pixel.y() >= -0.5 &&
                       image.pixel.x() < view.camera.width - 0.5 &&
                       image.pixel.y() < view.camera.height - 0.5;
-  return inside &&
-         !(surface && surface->blocked(point, view.pose.to_world(camera.exit_point(image.pixel))));
+  if (!inside || !surface) return inside;
+  return !surface->between(point, view.pose.to_world(camera.exit_point(image.pixel)), 1e-4, 0);
 }
 
 // Calls visit(i, camera, view) for every point and every view that sees it, one view after the
@@ -88,7 +88,7 @@ std::vector<View> views_of_model(const io::ColmapModel& model, const io::Housing
     const auto camera = cameras.find(image.camera);
     if (camera == cameras.end())
       fail("image {} refers to camera {}, which the model does not have", image.name, image.camera);
-    View view{image.name, camera->second, image.pose};
+    View view{{camera->second, image.pose}, image.name};
     if (housing)
       view.camera.port =
           housing->port_at(housing->port_of(image.name, image.camera), image.pose, image.name);

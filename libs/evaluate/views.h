@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/posed_camera.h"
 #include "geometry/surface.h"
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
@@ -16,11 +17,9 @@
 
 namespace axial::evaluate {
 
-// The camera of one photograph.
-struct View {
-  std::string name;    // of the image in the model
-  CameraModel camera;  // with its port, if there is one
-  Pose pose;
+// The camera of one photograph, with its port, if there is one.
+struct View : geometry::PosedCamera {
+  std::string name = {};  // of the image in the model
 };
 
 // Returns one view for each image of the model, in the order of the images, with the ports of

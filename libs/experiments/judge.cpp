@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
+#include "base/order_statistics.h"
 #include "evaluate/depth_evaluation.h"
 #include "evaluate/pixel_classes.h"
 #include "evaluate/statistics.h"
@@ -127,7 +128,7 @@ Json errors_of(std::span<const evaluate::DepthEvaluation> maps, double tolerance
   return {{"pixels", pixels},
           {"gross", part(errors.gross(), pixels)},
           {"mean", evaluate::summarise(errors.fine).mean},
-          {"median", evaluate::median_of(errors.all)},
+          {"median", mean_median(errors.all)},
           {"within", part(within, pixels)},
           {"completeness", part(pixels, truths)}};
 }
@@ -148,7 +149,9 @@ SceneDistances scene_distances(const SimulatedScene& scene, const std::string& m
     for (const float distance : cv::Mat1f(io::read_float_tiff(file)))
       if (distance > 0) distances.push_back(distance);
   std::sort(distances.begin(), distances.end());
-  const auto percentile = [&](double p) { return evaluate::percentile_of_sorted(distances, p); };
+  const auto percentile = [&](double p) {
+    return interpolated_quantile<float>(distances, p / 100);
+  };
   return {percentile(50), percentile(95) / percentile(5)};
 }
 

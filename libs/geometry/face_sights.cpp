@@ -72,9 +72,9 @@ class ViewCone {
 template <class Camera>
 class Observer {
  public:
-  Observer(const Occluders& occluders, const Camera& camera, const PosedCamera& posed,
+  Observer(const Surface& surface, const Camera& camera, const PosedCamera& posed,
            const SightOptions& options)
-      : occluders_(occluders), camera_(camera), posed_(posed), options_(options) {}
+      : surface_(surface), camera_(camera), posed_(posed), options_(options) {}
 
   // The cosine of the angle between `normal` and the path of light from `point`; 0 if the camera
   // does not see the point. `tested_side`: 1 or -1, the sign of the cosines that are of interest;
@@ -90,11 +90,11 @@ class Observer {
     const double cosine = (from - point).normalized().dot(normal);
     if (cosine == 0 || std::abs(cosine) < options_.least_cosine || cosine * tested_side < 0)
       return 0;
-    return occluders_.between(from, point, options_.tolerance) ? 0 : cosine;
+    return surface_.between(from, point, 0, options_.tolerance) ? 0 : cosine;
   }
 
  private:
-  const Occluders& occluders_;
+  const Surface& surface_;
   const Camera& camera_;
   const PosedCamera& posed_;
   const SightOptions& options_;
@@ -102,14 +102,14 @@ class Observer {
 
 // Calls look(camera, observer) with each camera, in their order.
 template <class Look>
-void for_each_observer(const Occluders& occluders, std::span<const PosedCamera> cameras,
+void for_each_observer(const Surface& surface, std::span<const PosedCamera> cameras,
                        const SightOptions& options, const ProgressSink& progress,
                        const Look& look) {
   ProgressCounter counter(progress, cameras.size());
   for (const PosedCamera& posed : cameras) {
     std::visit(
         [&](const auto& camera) {
-          look(ViewCone(camera, posed), Observer(occluders, camera, posed, options));
+          look(ViewCone(camera, posed), Observer(surface, camera, posed, options));
         },
         make_camera<double>(posed.camera));
     counter.add();
@@ -125,12 +125,12 @@ struct Faces {
   std::size_t operator[](std::size_t i) const { return some.empty() ? i : some[i]; }
 };
 
-FaceSights sights_of(const Faces& faces, const Occluders& occluders,
+FaceSights sights_of(const Faces& faces, const Surface& surface,
                      std::span<const PosedCamera> cameras, const SightOptions& options,
                      const ProgressSink& progress) {
   FaceSights sights{std::vector<std::uint16_t>(faces.count),
                     std::vector<std::uint16_t>(faces.count)};
-  for_each_observer(occluders, cameras, options, progress,
+  for_each_observer(surface, cameras, options, progress,
                     [&](const auto& cone, const auto& observer) {
                       parallel_for(
                           faces.count,
@@ -150,13 +150,13 @@ FaceSights sights_of(const Faces& faces, const Occluders& occluders,
 
 FaceSights count_sights(const Mesh& mesh, std::span<const PosedCamera> cameras,
                         const SightOptions& options, const ProgressSink& progress) {
-  return sights_of({mesh, mesh.faces.size()}, Occluders(mesh), cameras, options, progress);
+  return sights_of({mesh, mesh.faces.size()}, Surface(mesh), cameras, options, progress);
 }
 
-FaceSights count_sights(const Mesh& mesh, const Occluders& occluders,
+FaceSights count_sights(const Mesh& mesh, const Surface& surface,
                         std::span<const std::uint32_t> faces, std::span<const PosedCamera> cameras,
                         const SightOptions& options) {
-  return sights_of({mesh, faces.size(), faces}, occluders, cameras, options, {});
+  return sights_of({mesh, faces.size(), faces}, surface, cameras, options, {});
 }
 
 std::vector<float> second_cosines(const Mesh& mesh, std::span<const PosedCamera> cameras,
@@ -165,7 +165,7 @@ std::vector<float> second_cosines(const Mesh& mesh, std::span<const PosedCamera>
   const std::vector<Eigen::Vector3f> normals = vertex_normals(mesh);
   std::vector<std::array<float, 2>> best(mesh.faces.size(), {-1, -1});  // the larger one first
   for_each_observer(
-      Occluders(mesh), cameras, {.tolerance = options.tolerance}, progress,
+      Surface(mesh), cameras, {.tolerance = options.tolerance}, progress,
       [&](const auto& cone, const auto& observer) {
         parallel_for(
             mesh.faces.size(),
@@ -191,9 +191,7 @@ std::vector<float> second_cosines(const Mesh& mesh, std::span<const PosedCamera>
 }
 
 std::uint64_t bytes_of_sights(const Mesh& mesh) {
-  constexpr std::uint64_t kTreePerFace = 160;  // Embree's tree while it is built
-  return mesh.vertices.size() * sizeof(Eigen::Vector3f) +
-         mesh.faces.size() * (kTreePerFace + 2 * sizeof(std::uint16_t));
+  return bytes_of_surface(mesh) + mesh.faces.size() * 2 * sizeof(std::uint16_t);
 }
 
 std::uint64_t bytes_of_cosines(const Mesh& mesh) {

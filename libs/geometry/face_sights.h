@@ -8,18 +8,11 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "geometry/occluders.h"
-#include "scene/camera_model.h"
+#include "geometry/posed_camera.h"
+#include "geometry/surface.h"
 #include "scene/mesh.h"
-#include "scene/pose.h"
 
 namespace axial::geometry {
-
-// A camera with its pose in the frame of the mesh.
-struct PosedCamera {
-  CameraModel camera;
-  Pose pose;
-};
 
 struct SightOptions {
   // A face does not hide a point if it crosses the path of light less than tolerance * L from the
@@ -42,14 +35,14 @@ struct FaceSights {
 // width - 0.5 and from -0.5 to height - 0.5, and if no face of the mesh crosses the path of light
 // from the point to the place where the light leaves the water. Numbers above 65,535 count as
 // 65,535. Faces without area are seen from no side. Calls progress(done, total) with numbers of
-// cameras. The result does not depend on the number of threads. Error for a mesh that Occluders
-// refuses (geometry/occluders.h).
+// cameras. The result does not depend on the number of threads. Error for a mesh that Surface
+// refuses (geometry/surface.h).
 FaceSights count_sights(const Mesh& mesh, std::span<const PosedCamera> cameras,
                         const SightOptions& options = {}, const ProgressSink& progress = {});
 
-// The same for some faces: entry i of the result belongs to the face faces[i]. `occluders`: those
-// of `mesh`.
-FaceSights count_sights(const Mesh& mesh, const Occluders& occluders,
+// The same for some faces: entry i of the result belongs to the face faces[i]. `surface`: of
+// `mesh`.
+FaceSights count_sights(const Mesh& mesh, const Surface& surface,
                         std::span<const std::uint32_t> faces, std::span<const PosedCamera> cameras,
                         const SightOptions& options = {});
 

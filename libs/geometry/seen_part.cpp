@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/log.h"
-#include "geometry/occluders.h"
+#include "geometry/surface.h"
 
 namespace axial::geometry {
 namespace {
@@ -64,18 +64,18 @@ std::vector<std::uint32_t> faces_outside(const Mesh& mesh, const Eigen::AlignedB
 
 SeenPart find_seen_part(const Mesh& mesh, std::span<const PosedCamera> cameras,
                         const SeenPartOptions& options) {
-  const Occluders occluders(mesh);
+  const Surface surface(mesh);
   std::vector<PosedCamera> some;
   for (const std::uint32_t camera : spread_indices(cameras.size(), options.cameras))
     some.push_back(cameras[camera]);
   const std::vector<std::uint32_t> sample = spread_indices(mesh.faces.size(), options.faces);
   SeenPart part;
   const Eigen::AlignedBox3f near =
-      look_at_sample(mesh, sample, count_sights(mesh, occluders, sample, some), part);
+      look_at_sample(mesh, sample, count_sights(mesh, surface, sample, some), part);
   if (!options.strays || near.isEmpty()) return part;
   const std::vector<std::uint32_t> outside = faces_outside(mesh, near);
   if (outside.empty()) return part;
-  const FaceSights sights = count_sights(mesh, occluders, outside, cameras);
+  const FaceSights sights = count_sights(mesh, surface, outside, cameras);
   for (std::size_t i = 0; i < outside.size(); ++i)
     if (sights.front[i] == 0 && sights.back[i] == 0) part.strays.push_back(outside[i]);
   return part;

@@ -38,8 +38,8 @@ struct SeenPart {
 
 // Looks at the mesh. The faces of the sample have equal distances in the list of faces, and the
 // cameras that look at them have equal distances in `cameras`. All cameras look at faces that may
-// be strays. The result does not depend on the number of threads. Error for a mesh that Occluders
-// refuses (geometry/occluders.h).
+// be strays. The result does not depend on the number of threads. Error for a mesh that Surface
+// refuses (geometry/surface.h).
 SeenPart find_seen_part(const Mesh& mesh, std::span<const PosedCamera> cameras,
                         const SeenPartOptions& options = {});
 
@@ -49,14 +49,6 @@ void warn_if_inside_out(const SeenPart& part, const std::filesystem::path& mesh)
 // Logs a warning if the mesh of the file `mesh`, which has `faces` faces, has strays: that they are
 // left out.
 void warn_of_strays(const SeenPart& part, const std::filesystem::path& mesh, std::size_t faces);
-
-// The cameras of objects with the members `camera` and `pose`, in the frame of the mesh.
-template <class Views>
-std::vector<PosedCamera> posed_cameras(const Views& views) {
-  std::vector<PosedCamera> cameras;
-  for (const auto& view : views) cameras.push_back({view.camera, view.pose});
-  return cameras;
-}
 
 // Removes the elements with the given indices, which are in ascending order.
 template <class T>

@@ -4,39 +4,26 @@
 #include <embree3/rtcore.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "geometry/triangle_distance.h"
-#include "private/embree_errors.h"
+#include "scene/check_mesh.h"
 
 namespace axial::geometry {
 
-struct Surface::Impl {
-  std::vector<Eigen::Vector3f> vertices;
-  std::vector<std::array<std::uint32_t, 3>> faces;
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-
-  ~Impl() {
-    if (scene) rtcReleaseScene(scene);
-    if (device) rtcReleaseDevice(device);
-  }
-
-  std::array<Eigen::Vector3d, 3> corners(std::uint32_t face) const {
-    const auto& f = faces[face];
-    return {vertices[f[0]].cast<double>(), vertices[f[1]].cast<double>(),
-            vertices[f[2]].cast<double>()};
-  }
-};
-
 namespace {
 
+std::array<Eigen::Vector3d, 3> corners_of(const Mesh& mesh, std::uint32_t face) {
+  const auto& [a, b, c] = mesh.faces[face];
+  return {mesh.vertices[a].cast<double>(), mesh.vertices[b].cast<double>(),
+          mesh.vertices[c].cast<double>()};
+}
+
 struct Search {
-  const std::vector<Eigen::Vector3f>* vertices;
-  const std::vector<std::array<std::uint32_t, 3>>* faces;
+  const Mesh& mesh;
   Eigen::Vector3d point;
   double rounding;  // rounding error of `point` in the hierarchy, in float
   double best2 = std::numeric_limits<double>::infinity();
@@ -46,10 +33,8 @@ struct Search {
 
 bool visit(RTCPointQueryFunctionArguments* arguments) {
   Search& search = *static_cast<Search*>(arguments->userPtr);
-  const auto& f = (*search.faces)[arguments->primID];
-  const auto& v = *search.vertices;
-  const Eigen::Vector3d candidate = closest_on_triangle(
-      search.point, {v[f[0]].cast<double>(), v[f[1]].cast<double>(), v[f[2]].cast<double>()});
+  const Eigen::Vector3d candidate =
+      closest_on_triangle(search.point, corners_of(search.mesh, arguments->primID));
   const double distance2 = (candidate - search.point).squaredNorm();
   // Of faces at equal distance the lower index is taken, so that the result does not depend on the
   // hierarchy.
@@ -95,51 +80,66 @@ RTCRay ray_from(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction)
 
 }  // namespace
 
-void require_valid(const Mesh& mesh) {
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-    if (!mesh.vertices[i].allFinite()) fail("vertex {} of the mesh is not finite", i);
-  for (std::size_t i = 0; i < mesh.faces.size(); ++i)
-    for (const std::uint32_t corner : mesh.faces[i])
-      if (corner >= mesh.vertices.size())
-        fail("face {} of the mesh refers to vertex {}, but there are {}", i, corner,
-             mesh.vertices.size());
-}
+struct Surface::State {
+  struct Release {
+    void operator()(RTCDevice held) const { rtcReleaseDevice(held); }
+    void operator()(RTCScene held) const { rtcReleaseScene(held); }
+  };
 
-Surface::Surface(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
-  if (mesh.faces.empty()) fail("the mesh has no faces");
-  require_valid(mesh);
+  explicit State(const Mesh& given) : mesh(given) { divide(); }
+  explicit State(Mesh&& given) : own(std::move(given)), mesh(own) { divide(); }
+
+  void divide();
+  // Throws an Error if Embree has reported one since the last call.
+  void require_no_error() const {
+    const RTCError error = rtcGetDeviceError(device.get());
+    if (error == RTC_ERROR_NONE) return;
+    if (error == RTC_ERROR_OUT_OF_MEMORY)
+      fail("there is not enough memory to search the mesh, which has {} faces", mesh.faces.size());
+    fail("the mesh cannot be searched (error {} of the ray tracer)", static_cast<int>(error));
+  }
+
+  Mesh own;  // or empty
+  const Mesh& mesh;
+  std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device;
+  std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene;
+  std::vector<Eigen::Vector3f> vertices;  // and a spare one: Embree reads 16 bytes at a time
+};
+
+void Surface::State::divide() {
+  check_mesh(mesh);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
     if (!is_small(mesh.vertices[i]))
-      fail("vertex {} of the mesh has a coordinate larger than {:g}", i, kLargest);
-  impl_->vertices = mesh.vertices;
-  impl_->faces = mesh.faces;
-  impl_->device = rtcNewDevice(nullptr);
-  if (!impl_->device) require_no_error(nullptr, mesh.faces.size());
-  impl_->scene = rtcNewScene(impl_->device);
-  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                           sizeof(Eigen::Vector3f), impl_->vertices.size());
-  void* faces = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                        sizeof impl_->faces[0], impl_->faces.size());
-  require_no_error(impl_->device, mesh.faces.size());
-  // NOLINTNEXTLINE(bugprone-undefined-memory-manipulation): a Vector3f is three floats.
-  std::memcpy(vertices, impl_->vertices.data(), impl_->vertices.size() * sizeof(Eigen::Vector3f));
-  std::memcpy(faces, impl_->faces.data(), impl_->faces.size() * sizeof impl_->faces[0]);
+      fail("vertex {} has a coordinate larger than {:g}", i, kLargest);
+  vertices.reserve(mesh.vertices.size() + 1);
+  vertices = mesh.vertices;
+  vertices.emplace_back(Eigen::Vector3f::Zero());
+  device.reset(rtcNewDevice(nullptr));
+  if (!device) require_no_error();
+  scene.reset(rtcNewScene(device.get()));
+  rtcSetSceneFlags(scene.get(),
+                   static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT));
+  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                             vertices.data(), 0, sizeof(Eigen::Vector3f), mesh.vertices.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                             mesh.faces.data(), 0, sizeof(mesh.faces[0]), mesh.faces.size());
   rtcCommitGeometry(geometry);
-  rtcAttachGeometry(impl_->scene, geometry);
+  rtcAttachGeometry(scene.get(), geometry);
   rtcReleaseGeometry(geometry);
-  const ThreadLimit one_builder(1);
-  rtcCommitScene(impl_->scene);
-  require_no_error(impl_->device, mesh.faces.size());
+  const ThreadLimit one_builder(1);  // the same tree for any number of threads
+  rtcCommitScene(scene.get());
+  require_no_error();
 }
 
+Surface::Surface(const Mesh& mesh) : state_(std::make_unique<State>(mesh)) {}
+Surface::Surface(Mesh&& mesh) : state_(std::make_unique<State>(std::move(mesh))) {}
 Surface::~Surface() = default;
 Surface::Surface(Surface&&) noexcept = default;
 Surface& Surface::operator=(Surface&&) noexcept = default;
 
 ClosestPoint Surface::closest(const Eigen::Vector3d& point) const {
-  Search search{&impl_->vertices, &impl_->faces, point,
+  Search search{state_->mesh, point,
                 4 * std::numeric_limits<float>::epsilon() * point.cwiseAbs().maxCoeff()};
   RTCPointQuery query{};
   query.x = static_cast<float>(point.x());
@@ -148,25 +148,26 @@ ClosestPoint Surface::closest(const Eigen::Vector3d& point) const {
   query.radius = std::numeric_limits<float>::infinity();
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
-  rtcPointQuery(impl_->scene, &query, &context, visit, &search);
+  rtcPointQuery(state_->scene.get(), &query, &context, visit, &search);
   return {search.closest, std::sqrt(search.best2), search.face};
 }
 
 Eigen::Vector3d Surface::face_normal(std::uint32_t face) const {
-  const auto corners = impl_->corners(face);
-  const Eigen::Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  const auto [a, b, c] = corners_of(state_->mesh, face);
+  const Eigen::Vector3d normal = (b - a).cross(c - a);
   const double length = normal.norm();
   return length > 0 ? Eigen::Vector3d(normal / length) : Eigen::Vector3d::Zero();
 }
 
-bool Surface::blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double skip) const {
+bool Surface::between(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double at_from,
+                      double at_to) const {
   RTCRay ray = ray_from(from, to - from);
-  ray.tnear = static_cast<float>(skip);
-  ray.tfar = 1;
+  ray.tnear = static_cast<float>(at_from);
+  ray.tfar = static_cast<float>(1 - at_to);
   if (!can_be_traced(ray)) return true;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcOccluded1(impl_->scene, &context, &ray);
+  rtcOccluded1(state_->scene.get(), &context, &ray);
   return ray.tfar < 0;
 }
 
@@ -178,9 +179,14 @@ std::optional<SurfaceHit> Surface::first_hit(const Eigen::Vector3d& origin,
   if (!can_be_traced(query.ray)) return {};
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcIntersect1(impl_->scene, &context, &query);
+  rtcIntersect1(state_->scene.get(), &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   return SurfaceHit{query.hit.primID, query.hit.u, query.hit.v};
+}
+
+std::uint64_t bytes_of_surface(const Mesh& mesh) {
+  constexpr std::uint64_t kTreePerFace = 160;  // Embree's tree while it is built
+  return mesh.vertices.size() * sizeof(Eigen::Vector3f) + mesh.faces.size() * kTreePerFace;
 }
 
 std::vector<float> distances_to(const Surface& surface, std::span<const Eigen::Vector3f> points) {

@@ -9,9 +9,10 @@
 
 namespace axial::map {
 
-HeightErrors::HeightErrors(std::span<const Photo> photos, const Eigen::Vector3d& up, double noise)
+HeightErrors::HeightErrors(std::span<const PosedCamera> photos, const Eigen::Vector3d& up,
+                           double noise)
     : up_(up), noise_(noise) {
-  for (const Photo& photo : photos) {
+  for (const PosedCamera& photo : photos) {
     cameras_.emplace_back(make_camera<double>(photo.camera));
     poses_.push_back(photo.pose);
   }

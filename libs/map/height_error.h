@@ -37,7 +37,7 @@ class HeightErrors {
   static constexpr double kLeastCosine = 0.1;
 
   // `up`: unit vector of the heights in the frame of the photographs' poses. `noise`: above 0 [px].
-  HeightErrors(std::span<const Photo> photos, const Eigen::Vector3d& up, double noise);
+  HeightErrors(std::span<const PosedCamera> photos, const Eigen::Vector3d& up, double noise);
 
   // The expected error [m] of the height of the place `point` [frame of the poses] on a surface
   // with the normal `normal`, of any length. `views`: the photographs that see the place, as

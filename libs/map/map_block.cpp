@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/order_statistics.h"
 #include "map/geotiff.h"
 #include "scene/bilinear.h"
 
@@ -147,9 +148,7 @@ int samples_per_pixel(const MapContent& content) {
     if (pixels > 0) widths.push_back(std::abs(s.x() * t.y() - s.y() * t.x()) / pixels);
   }
   if (widths.empty()) return 1;
-  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-  std::nth_element(widths.begin(), middle, widths.end());
-  const double wanted = 1.5 * std::sqrt(*middle);
+  const double wanted = 1.5 * std::sqrt(upper_median(std::move(widths)));
   int samples = 1;
   while (samples < wanted && samples < 9) samples += 2;
   return samples;

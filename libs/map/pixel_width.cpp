@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "scene/any_camera.h"
 
@@ -50,7 +51,7 @@ struct Look {
   double quality = 0, area = 0;  // `area`: of the image of a unit of surface [px^2/m^2]
 };
 
-Look look_at(const Place& place, const Photo& photo, const AnyCamera<double>& camera) {
+Look look_at(const Place& place, const PosedCamera& photo, const AnyCamera<double>& camera) {
   refractive::Matrix23<double> jacobian;
   Eigen::Vector3d origin;
   const Eigen::Vector3d x = photo.pose.to_camera(place.point);
@@ -70,9 +71,9 @@ Look look_at(const Place& place, const Photo& photo, const AnyCamera<double>& ca
 
 }  // namespace
 
-double median_pixel_width(const Mesh& mesh, std::span<const Photo> photos, int places) {
+double median_pixel_width(const Mesh& mesh, std::span<const PosedCamera> photos, int places) {
   std::vector<AnyCamera<double>> cameras;
-  for (const Photo& photo : photos) cameras.emplace_back(make_camera<double>(photo.camera));
+  for (const PosedCamera& photo : photos) cameras.emplace_back(make_camera<double>(photo.camera));
   const std::vector<Place> all = places_on(mesh, places);
   std::vector<double> areas(all.size());
   parallel_for(all.size(), [&](std::size_t i) {
@@ -85,9 +86,7 @@ double median_pixel_width(const Mesh& mesh, std::span<const Photo> photos, int p
   });
   std::erase_if(areas, [](double area) { return !(area > 0); });
   if (areas.empty()) fail("no photograph shows the mesh");
-  const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
-  std::nth_element(areas.begin(), middle, areas.end());
-  return 1 / std::sqrt(*middle);
+  return 1 / std::sqrt(upper_median(std::move(areas)));
 }
 
 std::uint64_t bytes_of_pixel_width(const Mesh& mesh) {

@@ -4,17 +4,12 @@
 #include <cstdint>
 #include <span>
 
-#include "scene/camera_model.h"
+#include "geometry/posed_camera.h"
 #include "scene/mesh.h"
-#include "scene/pose.h"
 
 namespace axial::map {
 
-// A photograph: its camera, and its pose in the frame of the mesh.
-struct Photo {
-  CameraModel camera;
-  Pose pose;
-};
+using geometry::PosedCamera;
 
 // The median width [m] of a photograph's pixel on the mesh, to choose the pixel of a map. The
 // places are `places` points that are spread evenly over the area of the mesh. At each place the
@@ -23,7 +18,7 @@ struct Photo {
 // light, which is the measure of TextureMesh. The width is the square root of the area on the
 // surface that a pixel shows, as the exact camera projects it. Photographs that other parts of the
 // mesh hide from the place count, too. Error if no place is in a photograph that faces it.
-double median_pixel_width(const Mesh& mesh, std::span<const Photo> photos, int places = 2000);
+double median_pixel_width(const Mesh& mesh, std::span<const PosedCamera> photos, int places = 2000);
 
 // The memory [bytes] of median_pixel_width().
 std::uint64_t bytes_of_pixel_width(const Mesh& mesh);

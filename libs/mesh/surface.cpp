@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/disjoint_sets.h"
+#include "base/order_statistics.h"
 
 namespace axial::mesh {
 namespace {
@@ -141,10 +142,7 @@ Surface surface_without_long_edges(const Tetrahedra& tetrahedra,
     lengths.reserve(facets.size());
     for (const Facet& facet : facets)
       lengths.push_back(longest_edge(corners_of(tetrahedra, facet), points, widths));
-    std::vector<float> sorted = lengths;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    const float limit = static_cast<float>(factor / 3) * *middle;
+    const float limit = static_cast<float>(factor / 3) * upper_median(lengths);
     std::size_t f = 0;
     std::erase_if(facets, [&](const Facet&) { return lengths[f++] > limit; });
   }

@@ -11,6 +11,7 @@
 #include "base/hash.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/order_statistics.h"
 #include "base/progress.h"
 #include "cloud/crop.h"
 #include "io/openmvs/point_source.h"
@@ -227,10 +228,8 @@ class TiledRun {
   }
 
   double margin_at(const MergedPoints& points) const {
-    std::vector<float> widths = points.pixel_widths;
-    const auto at = widths.begin() + static_cast<std::ptrdiff_t>((widths.size() - 1) * 19 / 20);
-    std::nth_element(widths.begin(), at, widths.end());
-    return margin_ * static_cast<double>(*at);
+    const std::vector<float>& widths = points.pixel_widths;
+    return margin_ * static_cast<double>(value_at_place(widths, (widths.size() - 1) * 19 / 20));
   }
 
   // Appends the points inside `box`.

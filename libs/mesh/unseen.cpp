@@ -339,13 +339,6 @@ double marked_share(const Mesh& mesh) {
 
 }  // namespace
 
-std::vector<geometry::PosedCamera> cameras_of(const Scene& scene) {
-  std::vector<geometry::PosedCamera> cameras;
-  for (const SceneImage& image : scene.images)
-    if (image.calibrated) cameras.push_back({image.camera, image.pose});
-  return cameras;
-}
-
 std::vector<std::uint8_t> unseen_faces(const Mesh& mesh,
                                        std::span<const geometry::PosedCamera> cameras,
                                        const UnseenOptions& options, const ProgressSink& progress) {

@@ -16,9 +16,6 @@
 
 namespace axial::mesh {
 
-// Returns the calibrated cameras of the scene, in the order of the images.
-std::vector<geometry::PosedCamera> cameras_of(const Scene& scene);
-
 struct UnseenOptions {
   bool keep = false;  // treat_unseen(): true: unseen faces are marked instead of removed
   // unseen_faces(): whether the size of a face, and its distance to `points`, tell if the face was
@@ -60,7 +57,7 @@ struct UnseenOptions {
 // The result does not depend on the number of threads.
 //
 // Precondition: the mesh is manifold and oriented. Throws an Error for a mesh that
-// geometry::Occluders refuses.
+// geometry::Surface refuses.
 std::vector<std::uint8_t> unseen_faces(const Mesh& mesh,
                                        std::span<const geometry::PosedCamera> cameras,
                                        const UnseenOptions& options = {},

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/order_statistics.h"
+
 namespace axial::refine {
 namespace {
 
@@ -18,10 +20,7 @@ double median_of_positive(std::span<const double> values) {
   std::vector<double> positive;
   for (const double value : values)
     if (value > 0) positive.push_back(value);
-  if (positive.empty()) return 0;
-  const auto middle = positive.begin() + static_cast<std::ptrdiff_t>(positive.size() / 2);
-  std::nth_element(positive.begin(), middle, positive.end());
-  return *middle;
+  return upper_median(std::move(positive));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/order_statistics.h"
 #include "refine/anchor.h"
 #include "refine/choose_pairs.h"
 #include "refine/data_term.h"
@@ -25,13 +26,6 @@ constexpr unsigned kLeastSteps = 2, kMostSteps = 6;  // at each resolution
 // Steps end when they become smaller than this part of the first step at the resolution.
 constexpr double kLastStep = 0.3;
 constexpr unsigned kMostSplits = 6;  // each divides the area of a face by four
-
-double median_of(std::vector<float> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Turns the work that is done into numbers that never fall. A resolution has kMostSteps steps or
 // fewer, and the work of a step is in proportion to the pixels of its resolution.
@@ -71,7 +65,7 @@ class Work {
 
 class Refinement {
  public:
-  Refinement(State& state, std::span<const View> views, const Pictures& pictures,
+  Refinement(State& state, std::span<const PosedCamera> views, const Pictures& pictures,
              const Options& options, const ProgressSink& progress)
       : state_(state),
         mesh_(state.mesh),
@@ -88,7 +82,7 @@ class Refinement {
       go_on();
     while (state_.done < options_.scales) {
       refine_at(std::pow(options_.scale_step, options_.scales - 1 - state_.done));
-      report_.moved = median_of(distances_of_measured());
+      report_.moved = upper_median(distances_of_measured());
       work_.tell_end(++state_.done);
       if (checkpoint) checkpoint(state_);
     }
@@ -108,7 +102,7 @@ class Refinement {
 
   Sizes sizes() const {
     Sizes sizes{mesh_.vertices.size(), mesh_.faces.size(), views_.size()};
-    for (const View& view : views_)
+    for (const PosedCamera& view : views_)
       sizes.pixels = std::max(sizes.pixels, static_cast<std::uint64_t>(view.camera.width) *
                                                 static_cast<std::uint64_t>(view.camera.height));
     return sizes;
@@ -217,7 +211,7 @@ class Refinement {
     std::vector<float> moved;
     for (std::size_t v = 0; v < displacement.size(); ++v)
       if (information_[v] > 0) moved.push_back(std::abs(displacement[v]));
-    return median_of(std::move(moved));
+    return upper_median(std::move(moved));
   }
 
   std::vector<float> distances_of_measured() {
@@ -231,7 +225,7 @@ class Refinement {
   State& state_;
   Mesh& mesh_;      // of the state
   Report& report_;  // of the state
-  const std::span<const View> views_;
+  const std::span<const PosedCamera> views_;
   const Pictures& pictures_;
   const Options& options_;
   const Work work_;
@@ -242,13 +236,13 @@ class Refinement {
 
 }  // namespace
 
-void refine(State& state, std::span<const View> views, const Pictures& pictures,
+void refine(State& state, std::span<const PosedCamera> views, const Pictures& pictures,
             const Options& options, const ProgressSink& progress, const Checkpoint& checkpoint) {
   check_mesh(state.mesh);
   Refinement(state, views, pictures, options, progress).run(checkpoint);
 }
 
-Report refine(Mesh& mesh, std::span<const View> views, const Pictures& pictures,
+Report refine(Mesh& mesh, std::span<const PosedCamera> views, const Pictures& pictures,
               const Options& options, const ProgressSink& progress) {
   State state;
   std::swap(state.mesh, mesh);

@@ -38,17 +38,14 @@
 
 #include "base/progress.h"
 #include "base/setting_names.h"
-#include "scene/camera_model.h"
+#include "geometry/posed_camera.h"
 #include "scene/mesh.h"
-#include "scene/pose.h"
 
 namespace axial::refine {
 
-// A view at the resolution at which it is compared.
-struct View {
-  CameraModel camera;  // a width of 0: the view is not used
-  Pose pose;           // in the frame of the mesh
-};
+// A view at the resolution at which it is compared, in the frame of the mesh. A camera of the width
+// 0: the view is not used.
+using geometry::PosedCamera;
 
 // The pixels of a view, in the size of its camera.
 struct Picture {
@@ -132,12 +129,12 @@ using Checkpoint = std::function<void(const State& state)>;
 // Throws an Error if check_mesh() refuses the mesh (scene/check_mesh.h), for example a mesh without
 // faces. Throws an Error if no two views see the same surface, or if max_bytes is not enough. After
 // the last two errors, faces of `state.mesh` may have been split.
-void refine(State& state, std::span<const View> views, const Pictures& pictures,
+void refine(State& state, std::span<const PosedCamera> views, const Pictures& pictures,
             const Options& options = {}, const ProgressSink& progress = {},
             const Checkpoint& checkpoint = {});
 
 // The same for a mesh alone, which is refined in place.
-Report refine(Mesh& mesh, std::span<const View> views, const Pictures& pictures,
+Report refine(Mesh& mesh, std::span<const PosedCamera> views, const Pictures& pictures,
               const Options& options = {}, const ProgressSink& progress = {});
 
 }  // namespace axial::refine

@@ -14,10 +14,11 @@ int scaled_side(int side, double factor) {
 
 }  // namespace
 
-ScaledViews::ScaledViews(std::span<const View> views, const Pictures& pictures, double factor)
+ScaledViews::ScaledViews(std::span<const PosedCamera> views, const Pictures& pictures,
+                         double factor)
     : views_(views.begin(), views.end()), pictures_(pictures) {
   if (factor == 1) return;
-  for (View& view : views_)
+  for (PosedCamera& view : views_)
     if (view.camera.width > 0)
       view.camera = view.camera.resized(scaled_side(view.camera.width, factor),
                                         scaled_side(view.camera.height, factor));

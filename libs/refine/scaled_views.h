@@ -20,13 +20,13 @@ class ScaledViews {
  public:
   // `factor`: the image size relative to that of `views`, above 0 and at most 1. `pictures` must
   // outlive the object.
-  ScaledViews(std::span<const View> views, const Pictures& pictures, double factor);
+  ScaledViews(std::span<const PosedCamera> views, const Pictures& pictures, double factor);
 
   // All functions below take indices into the `views` of the constructor.
   std::size_t count() const { return views_.size(); }
   bool used(std::size_t view) const { return views_[view].camera.width > 0; }
-  const View& view(std::size_t i) const { return views_[i]; }  // with the resized camera
-  cv::Size size(std::size_t view) const;                       // of the resized image [px]
+  const PosedCamera& view(std::size_t i) const { return views_[i]; }  // with the resized camera
+  cv::Size size(std::size_t view) const;                              // of the resized image [px]
 
   struct Pixels {
     cv::Mat1f grey;  // 0 to 255
@@ -37,7 +37,7 @@ class ScaledViews {
   Pixels pixels(std::size_t view) const;
 
  private:
-  std::vector<View> views_;
+  std::vector<PosedCamera> views_;
   const Pictures& pictures_;
 };
 

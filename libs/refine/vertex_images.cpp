@@ -17,8 +17,8 @@ Eigen::Vector3f VertexImage::ray() const {
 namespace {
 
 template <class Camera>
-void project_all(const Camera& camera, const View& view, std::span<const Eigen::Vector3f> vertices,
-                 std::vector<VertexImage>& images) {
+void project_all(const Camera& camera, const PosedCamera& view,
+                 std::span<const Eigen::Vector3f> vertices, std::vector<VertexImage>& images) {
   const Eigen::Matrix3f rotation = view.pose.rotation.cast<float>();
   const float margin = static_cast<float>(std::max(view.camera.width, view.camera.height)) / 8;
   const float right = static_cast<float>(view.camera.width - 1) + margin;
@@ -42,7 +42,7 @@ void project_all(const Camera& camera, const View& view, std::span<const Eigen::
 }  // namespace
 
 std::vector<VertexImage> vertex_images(std::span<const Eigen::Vector3f> vertices,
-                                       const View& view) {
+                                       const PosedCamera& view) {
   std::vector<VertexImage> images(vertices.size());
   std::visit([&](const auto& camera) { project_all(camera, view, vertices, images); },
              make_camera<float>(view.camera));

@@ -29,6 +29,7 @@ struct VertexImage {
 // vertex is not visible if it is behind the camera, if the camera has no image of it, or if it is
 // projected beyond the image's border by more than an eighth of the image's longer side. Occlusion
 // is not considered.
-std::vector<VertexImage> vertex_images(std::span<const Eigen::Vector3f> vertices, const View& view);
+std::vector<VertexImage> vertex_images(std::span<const Eigen::Vector3f> vertices,
+                                       const PosedCamera& view);
 
 }  // namespace axial::refine

@@ -123,4 +123,11 @@ void find_photographs(Survey& survey) {
     survey.photograph_check = std::make_shared<PhotographCheck>(survey.scene, survey.file());
 }
 
+std::vector<geometry::PosedCamera> posed_cameras(const Survey& survey) {
+  std::vector<geometry::PosedCamera> cameras;
+  cameras.reserve(survey.views.size());
+  for (const View& view : survey.views) cameras.push_back({view.camera, view.pose});
+  return cameras;
+}
+
 }  // namespace axial::survey

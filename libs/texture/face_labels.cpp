@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "texture/outliers.h"
 
@@ -29,9 +30,7 @@ double median_edge(const Mesh& mesh) {
     for (std::size_t k = 0; k < 3; ++k)
       lengths.push_back(
           (mesh.vertices[mesh.faces[f][k]] - mesh.vertices[mesh.faces[f][(k + 1) % 3]]).norm());
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return static_cast<double>(*middle);
+  return upper_median(std::move(lengths));
 }
 
 // The faces that are labelled together. The first `free` faces have no label yet. Each of the

@@ -103,7 +103,7 @@ bool any_face_inside(const Mesh& mesh, std::span<const ProjectedVertex> vertices
 struct Scenery {
   const Mesh& mesh;
   std::span<const Eigen::Vector3f> normals;  // one per vertex of `mesh`
-  const geometry::Occluders& occluders;      // of the whole mesh
+  const geometry::Surface& surface;          // of the whole mesh
 };
 
 // What one view sees.
@@ -115,7 +115,7 @@ class Observer {
            const View& view, const ViewImage& image, std::vector<ProjectedVertex> vertices)
       : mesh_(scenery.mesh),
         normals_(scenery.normals),
-        occluders_(scenery.occluders),
+        surface_(scenery.surface),
         options_(options),
         camera_(camera),
         view_(view),
@@ -144,7 +144,7 @@ class Observer {
   }
 
   bool hidden(const Eigen::Vector3d& point, const Eigen::Vector2f& pixel) const {
-    return occluders_.between(exit(pixel), point, options_.tolerance);
+    return surface_.between(exit(pixel), point, 0, options_.tolerance);
   }
 
   bool sees_vertex(std::uint32_t i) {
@@ -209,7 +209,7 @@ class Observer {
 
   const Mesh& mesh_;
   std::span<const Eigen::Vector3f> normals_;
-  const geometry::Occluders& occluders_;
+  const geometry::Surface& surface_;
   const VisibilityOptions& options_;
   const Camera& camera_;
   const View& view_;
@@ -338,12 +338,10 @@ void look(const Scenery& scenery, std::span<const View> views, const ImageSource
 }  // namespace
 
 Surroundings::Surroundings(const Mesh& mesh)
-    : occluders(mesh), normals(geometry::vertex_normals(mesh)) {}
+    : surface(mesh), normals(geometry::vertex_normals(mesh)) {}
 
 std::uint64_t bytes_of_surroundings(const Mesh& mesh) {
-  // Normals, the occluders' copy of the vertices, and Embree's tree while it is built.
-  constexpr std::uint64_t kTreePerFace = 160;
-  return mesh.vertices.size() * 2 * sizeof(Eigen::Vector3f) + mesh.faces.size() * kTreePerFace;
+  return geometry::bytes_of_surface(mesh) + mesh.vertices.size() * sizeof(Eigen::Vector3f);
 }
 
 FaceViews find_face_views(const Mesh& mesh, std::span<const View> views, const ImageSource& images,
@@ -352,7 +350,7 @@ FaceViews find_face_views(const Mesh& mesh, std::span<const View> views, const I
   SeenFaces seen(mesh, views, memory, bytes_of_surroundings(mesh), progress);
   {
     const Surroundings whole(mesh);
-    look({mesh, whole.normals, whole.occluders}, views, images, options, seen);
+    look({mesh, whole.normals, whole.surface}, views, images, options, seen);
   }
   return by_face(mesh.faces.size(), seen.of_view());
 }
@@ -365,7 +363,7 @@ FaceViews find_face_views(const MeshPart& part, const Surroundings& whole,
   normals.reserve(part.vertices.size());
   for (const std::uint32_t v : part.vertices) normals.push_back(whole.normals[v]);
   SeenFaces seen(part.mesh, views, memory, normals.size() * sizeof(normals[0]), progress);
-  look({part.mesh, normals, whole.occluders}, views, images, options, seen);
+  look({part.mesh, normals, whole.surface}, views, images, options, seen);
   return by_face(part.mesh.faces.size(), seen.of_view());
 }
 

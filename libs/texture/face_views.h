@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "geometry/occluders.h"
+#include "geometry/surface.h"
 #include "scene/mesh.h"
 #include "texture/memory.h"
 #include "texture/mesh_tiles.h"
@@ -70,9 +70,9 @@ struct ViewMemory {
 //
 // Calls progress(done, total) with numbers of views, from any thread but one call at a time. As
 // many views are in work at the same time as there are threads, or fewer if `memory.budget` demands
-// it. `images` is not asked for a view whose image contains no face. Throws an Error if Occluders
-// refuses the mesh (occluders.h), or if the budget does not suffice for one view or for the result.
-// Exceptions of `images` are passed on.
+// it. `images` is not asked for a view whose image contains no face. Throws an Error if
+// geometry::Surface refuses the mesh, or if the budget does not suffice for one view or for the
+// result. Exceptions of `images` are passed on.
 FaceViews find_face_views(const Mesh& mesh, std::span<const View> views, const ImageSource& images,
                           const VisibilityOptions& options = {}, const ProgressSink& progress = {},
                           const ViewMemory& memory = {});
@@ -80,10 +80,10 @@ FaceViews find_face_views(const Mesh& mesh, std::span<const View> views, const I
 // What the sights of a face depend on, besides the face: the faces that can hide it, and the
 // normals of the mesh's vertices.
 struct Surroundings {
-  // `mesh` must outlive the object. Errors as for Occluders (occluders.h).
+  // `mesh` must outlive the object. Errors as for geometry::Surface.
   explicit Surroundings(const Mesh& mesh);
 
-  geometry::Occluders occluders;
+  geometry::Surface surface;
   std::vector<Eigen::Vector3f> normals;
 };
 

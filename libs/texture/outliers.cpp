@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 
 namespace axial::texture {
@@ -12,21 +13,16 @@ namespace {
 constexpr std::size_t kFewest = 5;    // sights of which one can be an outlier
 constexpr float kLeastDeviation = 6;  // [grey levels]
 
-float median(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // The squared distances of the sights' colours from their median.
 std::vector<float> distances(std::span<const Sight> sights) {
   std::vector<float> sums(sights.size(), 0), values(sights.size());
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t i = 0; i < sights.size(); ++i) values[i] = sights[i].color[c];
-    const float centre = median(values);
+    const float centre = upper_median_of_moved(values);
     for (std::size_t i = 0; i < sights.size(); ++i)
       values[i] = std::abs(static_cast<float>(sights[i].color[c]) - centre);
-    const float deviation = std::max(kLeastDeviation, 1.4826f * median(values));
+    const float deviation = std::max(
+        kLeastDeviation, static_cast<float>(kSigmasOfMedian) * upper_median_of_moved(values));
     for (std::size_t i = 0; i < sights.size(); ++i) {
       const float d = (static_cast<float>(sights[i].color[c]) - centre) / deviation;
       sums[i] += d * d;

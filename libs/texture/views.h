@@ -6,16 +6,11 @@
 #include <functional>
 #include <opencv2/core.hpp>
 
-#include "scene/camera_model.h"
-#include "scene/pose.h"
+#include "geometry/posed_camera.h"
 
 namespace axial::texture {
 
-// The camera of a photograph, at the resolution at which the photograph is used.
-struct View {
-  CameraModel camera;
-  Pose pose;  // in the frame of the mesh
-};
+using View = geometry::PosedCamera;  // of a photograph, in the frame of the mesh
 
 // The pixels of a photograph.
 struct ViewImage {

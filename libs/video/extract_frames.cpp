@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/order_statistics.h"
 #include "io/images/image.h"
 #include "video/clip.h"
 #include "video/frame_motion.h"
@@ -73,12 +74,9 @@ double pixels_per_frame(const ChosenFrames& found, std::size_t i) {
 }
 
 double median_pixels_per_frame(const ChosenFrames& found) {
-  if (found.chosen.empty()) return 0;
   std::vector<double> pixels;
   for (const std::size_t i : found.chosen) pixels.push_back(pixels_per_frame(found, i));
-  const auto middle = pixels.begin() + static_cast<std::ptrdiff_t>(pixels.size() / 2);
-  std::ranges::nth_element(pixels, middle);
-  return *middle;
+  return upper_median(std::move(pixels));
 }
 
 std::string frame_name(std::size_t i, const std::string& extension) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/order_statistics.h"
 #include "view/little_endian.h"
 
 namespace axial::view {
@@ -84,11 +85,9 @@ void append_errors(const PointErrors& errors, const PointChunk& chunk, ChunkData
 
 double error_step(std::span<const float> distances) {
   if (distances.empty()) return 0;
-  std::vector<float> sorted(distances.begin(), distances.end());
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::ranges::nth_element(sorted, middle);
+  const float middle = upper_median(std::vector<float>(distances.begin(), distances.end()));
   const double most = *std::ranges::max_element(distances);
-  const double limit = *middle > 0 ? std::min(most, 200.0 * *middle) : most;
+  const double limit = middle > 0 ? std::min(most, 200.0 * middle) : most;
   return std::max(limit, 1e-9) / 65535;
 }
 

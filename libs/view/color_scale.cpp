@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/order_statistics.h"
+
 namespace axial::view {
 namespace {
 
@@ -65,15 +67,8 @@ std::pair<double, double> quantiles(const cv::Mat1f& values, double low, double 
   std::vector<float> known;
   for (const float value : values)
     if (!std::isnan(value)) known.push_back(value);
-  if (known.empty()) return {0, 0};
-  const auto at = [&](double share) {
-    const auto place =
-        known.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(known.size() - 1));
-    std::ranges::nth_element(known, place);
-    return static_cast<double>(*place);
-  };
-  const double first = at(low);
-  return {first, at(high)};
+  const double first = lower_quantile(known, low);
+  return {first, lower_quantile(std::move(known), high)};
 }
 
 cv::Mat3b painted(const cv::Mat1f& values, const ColorScale& scale, const cv::Mat1b& shades) {

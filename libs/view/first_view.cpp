@@ -6,17 +6,10 @@
 #include <cmath>
 #include <vector>
 
+#include "base/order_statistics.h"
+
 namespace axial::view {
 namespace {
-
-// The value that the share `share` of `values` does not exceed; 0 without values.
-double quantile(std::vector<float> values, double share) {
-  if (values.empty()) return 0;
-  const auto last = static_cast<double>(values.size() - 1);
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * last);
-  std::ranges::nth_element(values, at);
-  return *at;
-}
 
 Eigen::Vector3d unit_or(const Eigen::Vector3d& direction, const Eigen::Vector3d& otherwise) {
   const double length = direction.norm();
@@ -30,11 +23,11 @@ FirstView first_view(const PointCloud& cloud, std::span<const SceneImage> images
   std::vector<float> values(cloud.size());
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = cloud.positions[i][axis];
-    view.centre[axis] = quantile(values, 0.5);
+    view.centre[axis] = lower_quantile(values, 0.5);
   }
   const Eigen::Vector3f centre = view.centre.cast<float>();
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = (cloud.positions[i] - centre).norm();
-  view.radius = std::max(quantile(std::move(values), 0.9), 1e-6);
+  view.radius = std::max(static_cast<double>(lower_quantile(std::move(values), 0.9)), 1e-6);
 
   Eigen::Vector3d towards(0, 0, 0), up(0, 0, 0);
   for (const SceneImage& image : images) {

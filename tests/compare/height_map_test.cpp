@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/order_statistics.h"
 #include "two_surveys.h"
 
 namespace axial::test {

@@ -103,10 +103,11 @@ TEST(Surface, DistancesDoNotDependOnThreads) {
 
 TEST(Surface, BlocksSightThroughTrianglesOnly) {
   const Surface surface(flat_square(2, 1));
-  EXPECT_TRUE(surface.blocked({0.3, 0.2, 0}, {0.3, 0.2, 2}));
-  EXPECT_FALSE(surface.blocked({0.3, 0.2, 0}, {0.3, 0.2, 0.99}));
-  EXPECT_FALSE(surface.blocked({1.3, 0.2, 0}, {1.3, 0.2, 2}));
-  EXPECT_FALSE(surface.blocked({0.3, 0.2, 1}, {0.3, 0.4, 3})) << "a point on it hides itself";
+  EXPECT_TRUE(surface.between({0.3, 0.2, 0}, {0.3, 0.2, 2}, 1e-4, 0));
+  EXPECT_FALSE(surface.between({0.3, 0.2, 0}, {0.3, 0.2, 0.99}, 1e-4, 0));
+  EXPECT_FALSE(surface.between({1.3, 0.2, 0}, {1.3, 0.2, 2}, 1e-4, 0));
+  EXPECT_FALSE(surface.between({0.3, 0.2, 1}, {0.3, 0.4, 3}, 1e-4, 0))
+      << "a point on it hides itself";
 }
 
 TEST(Surface, RefusesUnusableMeshes) {
@@ -124,8 +125,8 @@ TEST(Surface, RefusesUnusableMeshes) {
 TEST(Surface, NothingIsSeenFromBeyondTheLargestCoordinate) {
   const Surface surface(flat_square(2, 1));
   for (const double far : {1e20, 1e300}) {
-    EXPECT_TRUE(surface.blocked({0.3, 0.2, 0}, {0.3, 0.2, -far}));
-    EXPECT_TRUE(surface.blocked({far, 0.2, 0}, {0.3, 0.2, 2}));
+    EXPECT_TRUE(surface.between({0.3, 0.2, 0}, {0.3, 0.2, -far}, 1e-4, 0));
+    EXPECT_TRUE(surface.between({far, 0.2, 0}, {0.3, 0.2, 2}, 1e-4, 0));
     EXPECT_FALSE(surface.first_hit({0.3, 0.2, -far}, {0, 0, 1}));
   }
 }

@@ -24,7 +24,7 @@ simulate::View view_from(double x) {
 struct Pair {
   simulate::Lens lens = simulate::make_lens(1000, 1000, 60);
   simulate::Port port;
-  std::vector<Photo> photos;
+  std::vector<PosedCamera> photos;
 
   explicit Pair(double distance_of_port) {
     port.distance = distance_of_port, port.thickness = distance_of_port / 4;

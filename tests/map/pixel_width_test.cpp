@@ -11,8 +11,8 @@
 namespace axial::map {
 namespace {
 
-Photo looking_down(double height, double focal) {
-  Photo photo;
+PosedCamera looking_down(double height, double focal) {
+  PosedCamera photo;
   photo.camera.width = photo.camera.height = 1000;
   photo.camera.lens = {focal, focal, 499.5, 499.5};
   photo.pose.rotation = Eigen::Vector3d(1, -1, -1).asDiagonal();
@@ -22,7 +22,7 @@ Photo looking_down(double height, double focal) {
 
 TEST(PixelWidth, IsDistanceByFocalLength) {
   const Mesh mesh = test::height_field({-1, -1}, {1, 1}, 3, [](double, double) { return 0.5; });
-  const std::vector<Photo> photos{looking_down(4.5, 800), looking_down(2.5, 800)};
+  const std::vector<PosedCamera> photos{looking_down(4.5, 800), looking_down(2.5, 800)};
   EXPECT_NEAR(median_pixel_width(mesh, photos), 2.0 / 800, 1e-9);
   EXPECT_NEAR(median_pixel_width(mesh, std::span(photos).first(1)), 4.0 / 800, 1e-9);
 }
@@ -32,7 +32,7 @@ TEST(PixelWidth, IsDistanceByFocalLength) {
 TEST(PixelWidth, IsThatOfTheCameraBehindThePort) {
   const Mesh mesh =
       test::height_field({-.002, -.002}, {.002, .002}, 1, [](double, double) { return 0.; });
-  Photo photo = looking_down(2, 800);
+  PosedCamera photo = looking_down(2, 800);
   photo.camera.port = refractive::FlatPort<double>{{0, 0, 1}, 0.05, 0.01, 1.0, 1.5, 1.333};
   const double apparent = 0.05 + 0.01 / 1.5 + (2 - 0.06) / 1.333;
   EXPECT_NEAR(median_pixel_width(mesh, std::vector{photo}), apparent / 800, 1e-5 * apparent / 800);

@@ -35,7 +35,7 @@ class PhotographedMesh {
   explicit PhotographedMesh(Optics optics = Optics::pinhole) {
     for (const double x : {-0.25, 0.05, 0.3})
       for (const double y : {-0.15, 0.2}) {
-        refine::View view{camera_behind(optics), {}};
+        geometry::PosedCamera view{camera_behind(optics), {}};
         view.pose.centre = {x, y, 0.4};
         views.push_back(view);
         pictures.push_back({render(scene, view.camera, view.pose).image, {}});
@@ -85,7 +85,7 @@ class PhotographedMesh {
   }
 
   TexturedScene scene{.cell = 0.025};
-  std::vector<refine::View> views;
+  std::vector<geometry::PosedCamera> views;
   std::vector<refine::Picture> pictures;
 
  private:

@@ -60,7 +60,7 @@ TEST(Refine, APortThatIsIgnoredSpoilsTheMesh) {
   Mesh with_port = scene.mesh(0.004), without = with_port;
   scene.refine(with_port);
   PhotographedMesh ignorant = scene;
-  for (View& view : ignorant.views) view.camera.port.reset();
+  for (PosedCamera& view : ignorant.views) view.camera.port.reset();
   ignorant.refine(without);
   EXPECT_LT(2 * scene.error(with_port), scene.error(without));
 }

@@ -31,11 +31,6 @@ class SurveyTest : public test::SmallSurvey {
   }
 };
 
-struct PosedCamera {
-  CameraModel camera;
-  Pose pose;
-};
-
 std::vector<std::size_t> images_of(const Survey& survey) {
   std::vector<std::size_t> images;
   for (const View& view : survey.views) images.push_back(view.image);
@@ -49,7 +44,7 @@ TEST_F(SurveyTest, CalibratedImagesAreViewsAtTheWorkingResolution) {
   EXPECT_EQ(survey.views[1].id, 12u);
   EXPECT_EQ(survey.views[1].camera.width, 48);
   EXPECT_EQ(survey.views[1].pixels(), 48u * 36u);
-  EXPECT_EQ(cameras_of<PosedCamera>(survey)[1].pose.centre, survey.scene.images[2].pose.centre);
+  EXPECT_EQ(posed_cameras(survey)[1].pose.centre, survey.scene.images[2].pose.centre);
 }
 
 TEST_F(SurveyTest, AListNamesTheImagesToUse) {
