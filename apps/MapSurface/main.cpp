@@ -244,8 +244,8 @@ FaceFacts look_at_faces(const Mesh& mesh, const Settings& settings,
                         const survey::Photographs& photographs,
                         const std::optional<map::HeightErrors>& errors) {
   const texture::FaceViews seen = texture::find_face_views(
-      mesh, survey::posed_cameras(photographs.survey()),
-      texture::source_of(photographs), {}, console_progress("Numbers of views"),
+      mesh, survey::posed_cameras(photographs.survey()), texture::source_of(photographs), {},
+      console_progress("Numbers of views"),
       {texture::Budget(left_for_views(mesh, settings), option_of),
        photographs.bytes_to_read_color()});
   return facts_of(mesh, seen, errors);
@@ -262,10 +262,10 @@ TexturedMesh textured(TexturedMesh mesh, const Settings& settings,
   options.take_views = [&](const Mesh& split, const texture::FaceViews& seen) {
     facts = facts_of(split, seen, errors);
   };
-  TexturedMesh result = texture::texture_mesh(
-      std::move(mesh.mesh), survey::posed_cameras(photographs.survey()),
-      texture::source_of(photographs), options, nullptr,
-      [](const std::string& stage) { return console_progress(stage); });
+  TexturedMesh result =
+      texture::texture_mesh(std::move(mesh.mesh), survey::posed_cameras(photographs.survey()),
+                            texture::source_of(photographs), options, nullptr,
+                            [](const std::string& stage) { return console_progress(stage); });
   return_freed_memory();
   return result;
 }

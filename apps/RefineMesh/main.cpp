@@ -144,8 +144,8 @@ Mesh without_unseen(Mesh mesh, const survey::Survey& survey, bool keep) {
   unseen.keep = keep;
   const std::vector<Eigen::Vector3f> points = points_of(survey, mesh.faces.size());
   unseen.points = points;
-  return mesh::treat_unseen(std::move(mesh), survey::posed_cameras(survey),
-                            unseen, console_progress("Looked"));
+  return mesh::treat_unseen(std::move(mesh), survey::posed_cameras(survey), unseen,
+                            console_progress("Looked"));
 }
 
 void write(const fs::path& file, const Mesh& mesh, const LocalFrame& frame) {

@@ -119,8 +119,7 @@ void texture_and_write(const Settings& settings, const survey::Survey& survey, M
   Written written;
   naming(settings.mesh, [&] {
     texture::texture_tiles(
-        std::move(mesh), survey::posed_cameras(survey), texture::source_of(photographs),
-        options,
+        std::move(mesh), survey::posed_cameras(survey), texture::source_of(photographs), options,
         [&](std::size_t tile, const TexturedMesh& textured) {
           return_freed_memory();
           if (tile == 0) already_named([&] { photographs.report(); });
@@ -139,8 +138,7 @@ void check_sides(const Settings& settings, const survey::Survey& survey, const M
   settings.survey.memory.require(geometry::bytes_of_sights(mesh), "what the cameras see");
   naming(settings.mesh, [&] {
     geometry::warn_if_inside_out(
-        geometry::find_seen_part(mesh, survey::posed_cameras(survey),
-                                 {.strays = false}),
+        geometry::find_seen_part(mesh, survey::posed_cameras(survey), {.strays = false}),
         settings.mesh);
   });
   return_freed_memory();

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/posed_camera.h"
 #include "io/images/image.h"
 #include "io/openmvs/scene_with_cameras.h"
 #include "survey/options.h"
@@ -82,13 +83,7 @@ void find_photographs(Survey& survey);
 // The photographs and masks of the views.
 std::vector<std::filesystem::path> photograph_files(const Survey& survey);
 
-// The cameras of `survey.views`, as structs of a camera and a pose.
-template <class PosedCamera>
-std::vector<PosedCamera> cameras_of(const Survey& survey) {
-  std::vector<PosedCamera> cameras;
-  cameras.reserve(survey.views.size());
-  for (const View& view : survey.views) cameras.push_back({view.camera, view.pose});
-  return cameras;
-}
+// The cameras of `survey.views`.
+std::vector<geometry::PosedCamera> posed_cameras(const Survey& survey);
 
 }  // namespace axial::survey
