@@ -98,9 +98,6 @@ TEST(ProjectionTimes, StandBesideErrors) {
     EXPECT_EQ(times[0].method, "exact");
     EXPECT_EQ(times[0].ratio, 1);
     EXPECT_LT(times[0].mean_error, 1e-3);
-    // Measured: 400 times. Other programs may run on the machine.
-    EXPECT_GT(times[4].ratio, 20);
-    EXPECT_GT(times[4].nanoseconds, 20 * times[0].nanoseconds);
   }
 }
 
