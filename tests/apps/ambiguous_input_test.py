@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that could be confused: of two possible inputs, the program names the one that it reads,
-and it never overwrites an input. Also the memory for an import of many cameras."""
+"""Files and images that could be confused: of two possible inputs, the program names the one that it reads, and it
+never overwrites an input; an entry of a housing or lens file applies to one image only, or is refused. Also the
+memory for an import of many cameras."""
 
+import json
 import os
 import subprocess
 import sys
 
 import tiny_scene
-from programs import BIN, ProgramTest, files_below, main, read, write
-
-PORT = '{"version": 1, "ports": {"main": {"type": "flat", "distance_m": %s, "thickness_m": 0.01, ' \
-       '"normal": [0, 0, 1], "n_air": 1, "n_glass": 1.5, "n_water": 1.33}}, "default": "main"}'
+from programs import BIN, ProgramTest, main, png, read, write
+from worlds import flat, housing
 
 
 class Import(ProgramTest):
@@ -18,20 +18,16 @@ class Import(ProgramTest):
         super().setUp()
         tiny_scene.write_colmap(self.path("colmap"))
 
-    def imported(self, *arguments):
-        return self.succeeds("InterfaceCOLMAP", "-i", self.path("colmap"), "-o",
-                             self.path("scene.mvs"), *arguments).stdout
+    def command(self, *arguments, output="scene.mvs"):
+        return ("InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path(output), *arguments)
 
-    def test_a_stale_text_file_beside_a_model(self):
-        """A cameras.bin alone, beside a complete model in text form, is named and not read."""
-        text = self.imported()
-        self.assertNotIn("differ", text)
-        scene = read(self.path("scene.mvs"))
-        sparse = self.path("colmap", "sparse")
-        write(os.path.join(sparse, "cameras.bin"), b"stale")
-        said = self.imported()
-        self.assertIn("cameras.txt is read, as in COLMAP; ignored: cameras.bin", said)
-        self.assertEqual(read(self.path("scene.mvs")), scene)
+    def imported(self, *arguments):
+        return self.succeeds(*self.command(*arguments)).stdout
+
+    def port(self, name, distance):
+        """The option of a new housing file."""
+        write(self.path(name), housing(flat(distance_m=distance)))
+        return "--housing", self.path(name)
 
     def test_images_in_two_places(self):
         write(self.path("images", "0001.png"), b"")
@@ -44,66 +40,37 @@ class Import(ProgramTest):
         self.assertNotIn("not in", self.imported("-w", self.path("colmap")))
 
     def test_a_housing_beside_the_scene(self):
-        write(self.path("port.json"), PORT % 0.02)
-        self.assertNotIn("differ", self.imported("--housing", self.path("port.json")))
-        self.assertNotIn("differ", self.imported("--housing", self.path("port.json")))
-        write(self.path("other.json"), PORT % 0.03)
-        said = self.imported("--housing", self.path("other.json"))
-        self.assertIn(f"{self.path('scene.housing.json')}: is not used "
-                      f"({self.path('other.json')} is used instead), and its ports differ", said)
-        densify = ("DensifyPointCloud", "-i", self.path("scene.mvs"), "-w", self.folder,
-                   "--resolution-level", "0", "--iters", "1", "--geometric-iters", "0",
-                   "--refractive", "1")
+        port = self.port("port.json", 0.02)
+        for _ in range(2):
+            self.assertNotIn("differ", self.imported(*port))
+        unused = f"{self.path('scene.housing.json')}: is not used ({{}} is used instead), and its ports differ"
+        said = self.imported(*self.port("other.json", 0.03))
+        self.assertIn(unused.format(self.path("other.json")), said)
+        densify = ("DensifyPointCloud", "-i", self.path("scene.mvs"), "-w", self.folder, "--resolution-level", "0",
+                   "--iters", "1", "--geometric-iters", "0", "--refractive", "1")
         self.assertNotIn("differ", self.succeeds(*densify).stdout)
-        said = self.succeeds(*densify, "--housing", self.path("port.json")).stdout
-        self.assertIn(f"{self.path('scene.housing.json')}: is not used "
-                      f"({self.path('port.json')} is used instead), and its ports differ", said)
+        self.assertIn(unused.format(self.path("port.json")), self.succeeds(*densify, *port).stdout)
 
     def test_a_housing_and_a_model_with_ports(self):
         camera = f"PINHOLE {tiny_scene.WIDTH} {tiny_scene.HEIGHT} {tiny_scene.FOCAL} " \
                  f"{tiny_scene.FOCAL} {tiny_scene.CX} {tiny_scene.CY}"
         write(self.path("colmap", "sparse", "cameras.txt"),
               f"1 {camera} FLATPORT 0 0 1 0.02 0.01 1 1.5 1.33\n")
-        write(self.path("port.json"), PORT % 0.02)
-        self.assertNotIn("differ", self.imported("--housing", self.path("port.json")))
-        write(self.path("port.json"), PORT % 0.03)
-        self.assertIn("are used; the ports of the model in",
-                      self.imported("--housing", self.path("port.json")))
+        self.assertNotIn("differ", self.imported(*self.port("port.json", 0.02)))
+        self.assertIn("are used; the ports of the model in", self.imported(*self.port("port.json", 0.03)))
 
     def test_nothing_that_is_read_is_written_over(self):
         """Under any name: its own, that of a link, and that of a file written beside the scene."""
         sparse, images = self.path("colmap", "sparse"), self.path("colmap", "images")
-        write(self.path("lake.housing.json"), PORT % 0.02)
+        port = self.port("lake.housing.json", 0.02)
         os.symlink(os.path.join(images, "0001.png"), self.path("symbolic.mvs"))
         os.link(os.path.join(sparse, "points3D.txt"), self.path("hard.mvs"))
         outputs = [os.path.join(sparse, name + ".txt") for name in ("cameras", "images", "points3D")]
         outputs += [os.path.join(images, "0000.png"), self.path("symbolic.mvs"),
                     self.path("hard.mvs"), self.path("lake.mvs")]
-        before = {name: read(self.path(name)) for name in files_below(self.folder)}
         for output in outputs:
-            self.refuses("--output-file " + output.replace("lake.mvs", "lake.housing.json"),
-                         "InterfaceCOLMAP", "-i", self.path("colmap"), "-o", output, "--housing",
-                         self.path("lake.housing.json"))
-            self.assertEqual(before,
-                             {name: read(self.path(name)) for name in files_below(self.folder)})
-
-    def test_two_images_of_one_name(self):
-        path = self.path("colmap", "sparse", "images.txt")
-        write(path, read(path).replace(b"0002.png", b"./0001.png"))
-        self.refuses("images 2 and 3 have the same name", "InterfaceCOLMAP", "-i",
-                     self.path("colmap"), "-o", self.path("scene.mvs"))
-
-    def test_two_images_that_undistort_to_one_name(self):
-        tiny_scene.write_colmap(self.path("colmap"), f"SIMPLE_RADIAL {tiny_scene.WIDTH} "
-                                f"{tiny_scene.HEIGHT} {tiny_scene.FOCAL} {tiny_scene.CX} "
-                                f"{tiny_scene.CY} -0.05")
-        path = self.path("colmap", "sparse", "images.txt")
-        write(path, read(path).replace(b"0000.png", b"a.jpg").replace(b"0001.png", b"a.JPG"))
-        for name in ("a.jpg", "a.JPG"):  # the content tells an image's format
-            write(self.path("colmap", "images", name), tiny_scene.picture((0, 0, 0)))
-        self.refuses("the images a.jpg and a.JPG would both be undistorted to",
-                     "InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path("scene.mvs"))
-        self.assertNotIn("undistorted", os.listdir(self.folder))
+            self.refuses_and_keeps("--output-file " + output.replace("lake.mvs", "lake.housing.json"),
+                                   *self.command(*port, output=output))
 
 
 class ManyCameras(ProgramTest):
@@ -119,7 +86,7 @@ class ManyCameras(ProgramTest):
             f"{i + 1} 1 0 0 0 {-0.1 * i} 0 0 {i % cameras + 1} {i}.png\n\n"
             for i in range(self.COUNT)))
         write(os.path.join(folder, "sparse", "points3D.txt"), "")
-        picture = tiny_scene.png(self.WIDTH, self.HEIGHT, [bytes(3 * self.WIDTH)] * self.HEIGHT)
+        picture = png([bytes(3 * self.WIDTH)] * self.HEIGHT, 2)
         for i in range(self.COUNT):
             write(os.path.join(folder, "images", f"{i}.png"), picture)
         # RUSAGE_CHILDREN covers all children, so the import is the only child of another process.
@@ -136,6 +103,52 @@ class ManyCameras(ProgramTest):
         one_map = 8 * self.WIDTH * self.HEIGHT
         one, many = self.peak_of_import(1), self.peak_of_import(self.COUNT)
         self.assertLess(many - one, 2 * one_map, "all maps would be eleven more")
+
+
+class Names(ProgramTest):
+    """Images with the same base name in several folders, in place of 0000.png, 0001.png and 0002.png."""
+    NAMES = ("cam0/0000.png", "cam1/0000.png", "cam1/0001.png")
+
+    def setUp(self):
+        super().setUp()
+        tiny_scene.write_colmap(self.path("colmap"))
+        text = read(self.path("colmap", "sparse", "images.txt")).decode()
+        for old, new in reversed(list(zip(tiny_scene.names(), self.NAMES))):
+            write(self.path("colmap", "images", new), read(self.path("colmap", "images", old)))
+            text = text.replace(f" 1 {old}\n", f" 1 {new}\n")
+        write(self.path("colmap", "sparse", "images.txt"), text)
+
+    def port(self, images, default="none"):
+        write(self.path("port.json"), housing(flat(), default, images=images))
+        return "--housing", self.path("port.json")
+
+    def command(self, *arguments):
+        return ("InterfaceCOLMAP", "-i", self.path("colmap"), "--image-folder", self.path("colmap", "images"), "-o",
+                self.path("scene.mvs"), *arguments)
+
+    def test_a_base_name_of_several_images_is_refused(self):
+        expected = f"{self.path('port.json')}: housing.images.0000.png matches "
+        for images in ({"0000.png": "main"}, {"0000.png": "none", "0001.png": "main"}):
+            self.refuses(expected + "cam0/0000.png and cam1/0000.png", *self.command(*self.port(images, "main")))
+        port = self.port({"0000.png": "main"})
+        self.refuses(expected + "cam0/0000.png and cam1/0000.png", "RefinePoses", "-i", self.path("colmap"), "--lens",
+                     self.path("colmap", "sparse"), "-o", self.path("out"), *port)
+        # Without a housing the import succeeds. A scene names images by their paths, so there the
+        # base name is ambiguous, too, also in a lens file.
+        self.succeeds(*self.command())
+        densify = ("DensifyPointCloud", "-i", self.path("scene.mvs"), "-w", self.folder)
+        self.refuses(expected, *densify, *port)
+        write(self.path("scene.lenses.json"), json.dumps(
+            {"version": 1, "lenses": {}, "default": "none", "images": {"0000.png": "none"}}))
+        self.refuses(f"{self.path('scene.lenses.json')}: lenses.images.0000.png matches ", *densify)
+
+    def test_names_that_tell_images_apart(self):
+        # In the second file the first image has an entry of its own, so 0000.png can only mean the second image.
+        for images, expected in (({"cam0/0000.png": "main"}, ["main", "none", "none"]),
+                                 ({"cam0/0000.png": "none", "0000.png": "main"}, ["none", "main", "none"])):
+            self.succeeds(*self.command(*self.port(images)))
+            written = json.loads(read(self.path("scene.housing.json")))
+            self.assertEqual([written["images"].get(name, written["default"]) for name in self.NAMES], expected)
 
 
 if __name__ == "__main__":

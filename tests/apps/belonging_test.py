@@ -2,13 +2,12 @@
 """Meshes, clouds, scenes and photographs that do not belong together, and photographs that programs
 must find. The meshes are the true surfaces of the simulations."""
 
-import json
 import os
 import shutil
-import struct
-import tempfile
 
-from programs import ProgramTest, grey_png, main, read, run, write
+from programs import grey_png, main, must, read, run, write
+from readers import Ply
+from worlds import Simulated, binary_mesh, geo_offset
 
 SIZE = ("--views", "5", "--width", "320", "--height", "240", "--samples", "1")
 TINY = ("--views", "1", "--width", "16", "--height", "12")  # where only the mesh matters
@@ -16,42 +15,36 @@ OFFSET = (534000.0, 3378500.0, 0.0)
 
 
 def moved_mesh(data, change):
-    """A binary PLY mesh of floats x, y, z with its positions changed, without comments."""
-    header, body = data.split(b"end_header\n", 1)
-    lines = [line for line in header.split(b"\n") if not line.startswith(b"comment")]
-    count = next(int(line.split()[2]) for line in lines if line.startswith(b"element vertex"))
-    properties = header.split(b"element vertex")[1].split(b"element")[0].count(b"property")
-    rows = [struct.unpack_from("<3f", body, 4 * properties * i) for i in range(count)]
-    assert header.count(b"property float") == 3 and properties == 3, header
-    positions = b"".join(struct.pack("<3f", *change(row)) for row in rows)
-    return b"\n".join(lines) + b"end_header\n" + positions + body[12 * count:]
+    """A mesh with its positions changed, without comments."""
+    mesh = Ply(data)
+    return binary_mesh(map(change, mesh.points), mesh.triangles)
 
 
-class Belonging(ProgramTest):
+class Belonging(Simulated):
+    SCENE = ()
+
     @classmethod
-    def setUpClass(cls):
-        cls.kept = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.addClassCleanup(cls.kept.cleanup)
-        folder = cls.simulated("one", "closeup", "6", SIZE)
-        said = run("InterfaceCOLMAP", "-i", folder + "/sparse", "--image-folder", folder + "/water",
-                   "--housing", folder + "/housing.json", "-o", folder + "/scene.mvs")
-        assert said.returncode == 0, said.stderr
+    def make(cls, folder):
+        cls.shared = folder
+        cls.truth = cls.simulated("one", "closeup", "6", SIZE)
+        cls.imported(cls.at("one", "scene.mvs"), "water")
 
     @classmethod
     def simulated(cls, name, preset, coarseness, size):
         """The folder of a simulated scene."""
-        folder = os.path.join(cls.kept.name, name)
-        said = run("SimulateUnderwater", "--preset", preset, "--coarseness", coarseness, *size,
-                   "--medium", "water", "--truth", "0", "-o", folder)
-        assert said.returncode == 0, said.stderr
-        return folder
+        must("SimulateUnderwater", "--preset", preset, "--coarseness", coarseness, *size, "--medium", "water",
+             "--truth", "0", "-o", cls.at(name))
+        return cls.at(name)
 
     def setUp(self):
         super().setUp()
         self.one = self.path("one")
-        shutil.copytree(os.path.join(self.kept.name, "one"), self.one)
+        shutil.copytree(self.truth, self.one)
         self.mesh = self.path("one", "mesh.ply")
         os.mkdir(self.path("empty"))
+
+    def photograph(self, number):
+        return self.path("one", "water", f"{number:04}.jpg")
 
     def of_scene(self, program, *arguments):
         return (program, "-w", self.one, "-i", "scene.mvs", *arguments)
@@ -76,8 +69,8 @@ class Belonging(ProgramTest):
 
 class Shapes(Belonging):
     @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
+    def make(cls, folder):
+        super().make(folder)
         cls.other = os.path.join(cls.simulated("other", "reef", "4", TINY), "mesh.ply")
 
     def test_the_mesh_of_the_scene_raises_no_alarm(self):
@@ -122,7 +115,7 @@ class Shapes(Belonging):
 class Offsets(Belonging):
     def setUp(self):
         super().setUp()
-        write(self.path("one", "scene.geo.json"), json.dumps({"version": 1, "geo_offset": OFFSET}))
+        write(self.path("one", "scene.geo.json"), geo_offset(*OFFSET))
 
     def test_a_mesh_that_lost_its_offset_is_local(self):
         # The scene is local, and states its offset. The mesh is local, and states none.
@@ -157,17 +150,11 @@ class Offsets(Belonging):
 
 
 class Photographs(Belonging):
-    def photograph(self, number):
-        return self.path("one", "water", f"{number:04}.jpg")
-
-    def programs(self):
-        return self.with_mesh(self.mesh)
-
     def test_exchanged_photographs_are_named(self):
         shutil.move(self.photograph(1), self.path("a.jpg"))
         shutil.move(self.photograph(4), self.photograph(1))
         shutil.move(self.path("a.jpg"), self.photograph(4))
-        for command in self.programs():
+        for command in self.with_mesh(self.mesh):
             warnings = self.warnings(*command)
             self.assertEqual(len(warnings), 2, (command, warnings))
             for warning, number in zip(warnings, (1, 4)):
@@ -177,11 +164,11 @@ class Photographs(Belonging):
     def test_blank_photographs_are_named_and_refused_if_all_are(self):
         grey = grey_png([b"\x80" * 320] * 240)
         write(self.photograph(2), grey)
-        for command in self.programs():
+        for command in self.with_mesh(self.mesh):
             self.assertIn(self.photograph(2) + ": the photograph is blank", self.warnings(*command)[0])
         for number in range(5):
             write(self.photograph(number), grey)
-        for command in self.programs():
+        for command in self.with_mesh(self.mesh):
             shutil.rmtree(self.path("one", "page"), ignore_errors=True)
             said = run(*command)
             self.assertEqual(said.returncode, 1, (command, said.stderr))
@@ -189,11 +176,11 @@ class Photographs(Belonging):
 
     def test_small_photographs_are_noticed_and_tiny_ones_refused(self):
         write(self.photograph(2), grey_png([bytes(range(160))] * 120))
-        for command in (*self.programs(), self.of_scene("DensifyPointCloud", "-o", "new.mvs")):
+        for command in (*self.with_mesh(self.mesh), self.of_scene("DensifyPointCloud", "-o", "new.mvs")):
             self.assertTrue(any("0002.jpg: is 160x120, but its camera is 320x240: 1 of 5 photographs are "
                                 "smaller" in warning for warning in self.warnings(*command)), command)
         write(self.photograph(2), grey_png([b"\x80"]))
-        for command in (*self.programs(), self.of_scene("DensifyPointCloud", "-o", "new2.mvs")):
+        for command in (*self.with_mesh(self.mesh), self.of_scene("DensifyPointCloud", "-o", "new2.mvs")):
             shutil.rmtree(self.path("one", "page"), ignore_errors=True)
             self.refuses("0002.jpg: is 1x1, too small for its camera, which is 320x240", *command)
 
@@ -223,11 +210,8 @@ class Folders(Belonging):
         shutil.copytree(self.path("one", "water"), self.path("empty", "water"))
         warnings = self.warnings("TextureMesh", "-i", self.path("one", "scene.mvs"), "-m", self.mesh, "-o",
                                  self.path("new.glb"), cwd=self.path("empty"))
-        self.assertIn(self.path("empty", "water", "0000.jpg") + " is used, although " + self.photograph(),
+        self.assertIn(self.path("empty", "water", "0000.jpg") + " is used, although " + self.photograph(0),
                       warnings[0])
-
-    def photograph(self):
-        return self.path("one", "water", "0000.jpg")
 
 
 if __name__ == "__main__":

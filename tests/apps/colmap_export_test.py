@@ -3,32 +3,21 @@
 
 import json
 import os
-import re
 import shutil
-import struct
 
 import tiny_scene
-from openmvs_scene import Scene
 from programs import ProgramTest, cloud_size, main, read, write
+from readers import records, with_paths
+from worlds import Densified, flat, housing
 
 
-def with_image_folder(scene, folder):
-    """The bytes of the scene with the images' folder replaced by `folder`."""
-    for path in set(re.findall(rb"[^\0]*/\d{4}\.jpg", scene)):
-        before = struct.pack("<Q", len(path)) + path
-        after = os.path.join(folder, path[-8:].decode()).encode()
-        assert scene.count(before) == 1
-        scene = scene.replace(before, struct.pack("<Q", len(after)) + after)
-    return scene
-
-
-class Export(Scene):
-    SAMPLES = 1
+class Export(Densified):
+    def export(self, folder, *arguments):
+        return ("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder, *arguments)
 
     def model(self, folder):
         """Cameras by id, images by name, and points of a text model, read without our programs."""
-        lines = lambda name: [line.split() for line in read(os.path.join(folder, name)).decode()
-                              .splitlines() if not line.startswith("#")]
+        lines = lambda name: [line.split() for line in records(os.path.join(folder, name))]
         cameras = {line[0]: line[1:] for line in lines("cameras.txt")}
         text = lines("images.txt")
         images = {head[9]: (head[0], [float(x) for x in head[1:8]], head[8],
@@ -43,7 +32,7 @@ class Export(Scene):
 
     def check_round_trip(self, medium, cameras_too):
         folder = self.copy(medium)
-        self.succeeds("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder, "-o", "back")
+        self.succeeds(*self.export(folder, "-o", "back"))
         cameras, images, points = self.model(os.path.join(self.truth, "sparse"))
         again = self.model(os.path.join(folder, "back", "sparse"))
         self.assertEqual(len(again[0]), len(cameras))
@@ -52,18 +41,14 @@ class Export(Scene):
             found_id, found, found_camera, _ = again[1][name]
             sign = 1 if pose[0] * found[0] + pose[1] * found[1] + pose[2] * found[2] \
                 + pose[3] * found[3] > 0 else -1
-            for i in range(4):
-                self.assertAlmostEqual(sign * found[i], pose[i], 12)
-            for i in range(4, 7):
-                self.assertAlmostEqual(found[i], pose[i], 12)
+            self.near([sign * value for value in found[:4]] + found[4:], pose, 5e-13)
             if cameras_too:
                 self.assertEqual([float(x) for x in again[0][found_camera][1:]],
                                  [float(x) for x in cameras[camera][1:]])
         self.assertEqual(len(again[2]), len(points))
         largest = 0
         for (xyz, color, track), (found, found_color, found_track) in zip(points, again[2]):
-            for a, b in zip(xyz, found):
-                self.assertAlmostEqual(a, b, 5)  # points of a scene are float32
+            self.near(xyz, found, 5e-6)  # points of a scene are float32
             self.assertEqual(found_color, color)
             self.assertEqual(sorted({name for name, _ in found_track}),
                              sorted({name for name, _ in track}))
@@ -80,7 +65,7 @@ class Export(Scene):
 
     def test_only_an_export_is_overwritten(self):
         folder = self.copy("air")
-        command = ("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder)
+        command = self.export(folder)
         for part in ("cameras.txt", "points3D.bin", "frames.txt"):
             mine = os.path.join(folder, "sparse", part)
             write(mine, "mine")
@@ -104,8 +89,8 @@ class Export(Scene):
             shutil.copy(os.path.join(self.truth, "air", name), os.path.join(folder, "there", name))
         os.makedirs(self.path("elsewhere"), exist_ok=True)
         scene = read(os.path.join(folder, "scene.mvs"))
-        for place, found in (("../closeup/air", 5), ("there", 2), ("nowhere", 0)):
-            write(os.path.join(folder, "scene.mvs"), with_image_folder(scene, place))
+        for place, found in (("../truth/air", 5), ("there", 2), ("nowhere", 0)):
+            write(os.path.join(folder, "scene.mvs"), with_paths(scene, lambda path: place + path[-9:]))
             missing = 5 - found
             for start in (folder, self.path("elsewhere")):
                 with self.subTest(place=place, start=start):
@@ -118,32 +103,29 @@ class Export(Scene):
                     self.assertEqual(f"{missing} of them do not exist" in line[0], missing > 0)
                     self.assertEqual(f"working folder, {start}, which -w sets" in line[0],
                                      missing > 0)
-        self.succeeds("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder, cwd=start)
+        self.succeeds(*self.export(folder), cwd=start)
 
     def test_goes_to_no_file_name(self):
         folder = self.copy("air")
         for name in ("x.mvs", "new/scene.mvs", "cloud.ply", "cameras.txt"):
-            self.refuses(f"--output-file {name}: must be a folder", "InterfaceCOLMAP", "-i",
-                         "scene.mvs", "-w", folder, "-o", name)
+            self.refuses(f"--output-file {name}: must be a folder", *self.export(folder, "-o", name))
             self.assertFalse(os.path.exists(os.path.join(folder, name)))
         write(os.path.join(folder, "photo.jpg"), "mine")
-        self.refuses("--output-file photo.jpg: is a file", "InterfaceCOLMAP", "-i", "scene.mvs", "-w",
-                     folder, "-o", "photo.jpg")
-        self.succeeds("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder, "-o", "dive.2")
+        self.refuses("--output-file photo.jpg: is a file", *self.export(folder, "-o", "photo.jpg"))
+        self.succeeds(*self.export(folder, "-o", "dive.2"))
         self.assertIn("cameras.txt", os.listdir(os.path.join(folder, "dive.2", "sparse")))
 
     def test_behind_a_port(self):
         folder = self.copy("water")
-        said = self.succeeds("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder).stdout
+        said = self.succeeds(*self.export(folder)).stdout
         self.assertIn("5 of 5 images are behind ports", said)
         self.assertIn("FLATPORT", read(os.path.join(folder, "sparse", "cameras.txt")).decode())
         # The exported model is imported again: its ports replace the housing file.
         os.remove(os.path.join(folder, "scene.housing.json"))
-        self.succeeds("InterfaceCOLMAP", "-i", folder, "-o", os.path.join(folder, "scene.mvs"),
-                      "--image-folder", os.path.join(self.truth, "water"))
-        self.succeeds(*self.command(folder, "--refractive"))
+        self.imported(os.path.join(folder, "scene.mvs"), "water", model=folder, port=())
+        self.said(folder, "--refractive")
         self.assertAlmostEqual(cloud_size(self.cloud(folder)) /
-                               cloud_size(read(self.densified("water", "scene_dense.ply"))), 1, 1)
+                               cloud_size(self.whole("water")), 1, 1)
 
 
 class RoundTrip(ProgramTest):
@@ -151,8 +133,6 @@ class RoundTrip(ProgramTest):
     scene are exact in a quaternion, so the bytes are the same, except for the signs of zeros."""
     SIZE = f"{tiny_scene.WIDTH} {tiny_scene.HEIGHT}"
     CENTRE = f"{tiny_scene.CX} {tiny_scene.CY}"
-    PORT = {"type": "flat", "normal": [0, 0, 1], "distance_m": 0.02, "thickness_m": 0.005,
-            "n_glass": 1.49, "n_water": 1.333}
 
     def round_trip(self, camera, *options):
         folder = self.path("a")
@@ -190,8 +170,7 @@ class RoundTrip(ProgramTest):
                 self.assertEqual(len(lenses), 0 if exported == "PINHOLE" else 2)
 
     def test_a_lens_behind_a_port(self):
-        write(self.path("housing.json"), json.dumps({"version": 1, "ports": {"main": self.PORT},
-                                                     "default": "main"}))
+        write(self.path("housing.json"), housing(flat(thickness_m=0.005, n_glass=1.49)))
         lenses, housings = self.round_trip(f"OPENCV {self.SIZE} 90 91 {self.CENTRE} -.1 .02 .001 0",
                                            "--housing", self.path("housing.json"))
         self.assertEqual(lenses[0], lenses[1])

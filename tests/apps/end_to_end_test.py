@@ -8,9 +8,8 @@ import re
 import signal
 import subprocess
 import time
-import unittest
 
-from close_up import GSD, QUICK, SceneTest
+from close_up import FINE, GSD, QUICK, CloseUp
 from programs import BIN, cloud_size, depth_rows, files_below, grey_png, main, read, write
 
 
@@ -18,7 +17,9 @@ from programs import BIN, cloud_size, depth_rows, files_below, grey_png, main, r
 ALL_STAGES = ("--postprocess-dmaps", "7", *QUICK)
 
 
-class EndToEnd(SceneTest):
+class EndToEnd(CloseUp):
+    SCENE = FINE
+
     def check_cloud(self, result):
         # OpenMVS has a mean of half a GSD on such scenes at full resolution, this run a quarter.
         self.assertLess(result["accuracy"]["mean"], 0.4 * GSD)
@@ -31,20 +32,20 @@ class EndToEnd(SceneTest):
     def test_in_air(self):
         self.import_scene("air", "air")
         self.densify("air", "--resolution-level", "0")
-        self.check_cloud(self.evaluate("air", "air"))
+        self.check_cloud(self.scores("air", "air"))
 
     def test_under_water(self):
         self.import_scene("water", "water")
         self.densify("water", "--refractive", "--resolution-level", "0")
-        self.check_cloud(self.evaluate("water", "water"))
+        self.check_cloud(self.scores("water", "water"))
 
     def test_ignoring_the_port_shows(self):
         self.import_scene("water", "ignored")
         self.densify("ignored", "--camera-model", "pinhole", "--number-views-fuse", "2", *QUICK)
-        ignored = self.evaluate("water", "ignored")["accuracy"]
+        ignored = self.scores("water", "ignored")["accuracy"]
         self.import_scene("water", "obeyed")
         self.densify("obeyed", "--refractive", "--number-views-fuse", "2", *QUICK)
-        obeyed = self.evaluate("water", "obeyed")["accuracy"]
+        obeyed = self.scores("water", "obeyed")["accuracy"]
         # The air gap of 3 cm and the tilt shift rays by centimetres. Matching errs by about 1 mm.
         self.assertGreater(ignored["median"], 5 * obeyed["median"])
 
@@ -84,8 +85,7 @@ class EndToEnd(SceneTest):
         for folder in ("whole", "parts"):
             self.import_scene("water", folder)
         self.densify("whole", "--refractive", *ALL_STAGES)
-        run = ("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path("parts"), "--refractive",
-               *ALL_STAGES)
+        run = self.command("parts", "--refractive", *ALL_STAGES)
         self.succeeds(*run, "--plan", "plan.json", "--plan-parts", "3")
         plan = json.loads(read(self.path("parts", "plan.json")))
         self.assertEqual((plan["images"], plan["parts"]), (4, 3))
@@ -104,14 +104,13 @@ class EndToEnd(SceneTest):
 
     def test_refuses_wrong_parts(self):
         self.import_scene("air", "refused")
-        run = ("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path("refused"), *QUICK)
-        for part in ("0/2", "3/2", "1", "a/b", "1/2/3", "-1/2", "1/0"):
-            self.refuses(f"--part {part}: must be", *run, "--until", "maps", f"--part={part}")
-        self.refuses("--part 1/2: needs --until", *run, "--part", "1/2")
-        self.refuses("--until fast: must be one of photometric", *run, "--until", "fast")
-        self.refuses("--until maps: this run makes no", *run, "--until", "maps", "--fusion-mode", "-1")
-        self.refuses("--plan ", *run, "--plan", "p.json", "--until", "maps")
-        self.refuses("plan", *run, "--plan", "scene.mvs")
+        self.refuses_each(
+            self.command("refused", *QUICK), *((f"--part {part}: must be", "--until", "maps", f"--part={part}")
+                                               for part in ("0/2", "3/2", "1", "a/b", "1/2/3", "-1/2", "1/0")),
+            ("--part 1/2: needs --until", "--part", "1/2"),
+            ("--until fast: must be one of photometric", "--until", "fast"),
+            ("--until maps: this run makes no", "--until", "maps", "--fusion-mode", "-1"),
+            ("--plan ", "--plan", "p.json", "--until", "maps"), ("plan", "--plan", "scene.mvs"))
         self.assertNotIn("p.json", files_below(self.path("refused")))
 
     def test_the_same_bytes_under_a_small_cap_on_memory(self):
@@ -120,8 +119,8 @@ class EndToEnd(SceneTest):
                 for folder in ("free", "capped"):
                     self.import_scene("water", folder)
                 self.densify("free", "--refractive", *stages)
-                said = self.refuses("--max-memory 20: ", "DensifyPointCloud", "-i", "scene.mvs", "-w",
-                                    self.path("capped"), "--refractive", "--max-memory", "20", *stages)
+                said = self.refuses("--max-memory 20: ", *self.command("capped", "--refractive", "--max-memory", "20",
+                                                                       *stages))
                 least = int(re.search(r"needs (\d+)", said.stderr)[1]) + 5
                 self.densify("capped", "--refractive", "--max-memory", least, *stages)
                 self.assertEqual(self.outputs("free"), self.outputs("capped"))
@@ -163,36 +162,14 @@ class EndToEnd(SceneTest):
         self.assertGreater(left, 0)
         self.assertEqual(left, whole - removed)
 
-    def test_maps_that_were_tampered_with_are_made_anew(self):
-        self.import_scene("water", "damaged")
-        self.densify("damaged", "--refractive", *QUICK)
-        expected = self.outputs("damaged")
-        first = self.path("damaged", "depth0000.dmap")
-        # The last wrong map is complete, so that it might be another program's.
-        for wrong, asked in ((read(first)[:1000], ()), (b"", ()),
-                             (read(self.path("damaged", "depth0001.dmap")),
-                              ("--overwrite-dmaps", "1"))):
-            write(first, wrong)
-            if asked:
-                self.refuses("depth0000.dmap", "DensifyPointCloud", "-i", "scene.mvs", "-w",
-                             self.path("damaged"), "--refractive", *QUICK)
-            said = self.densify("damaged", "--refractive", *asked, *QUICK)
-            self.assertIn("3 maps existed already", said)
-            self.assertEqual(self.outputs("damaged"), expected)
-
-        os.remove(self.path("damaged", "depth0002.dmap.json"))
-        self.refuses("depth0002.dmap", "DensifyPointCloud", "-i", "scene.mvs", "-w",
-                     self.path("damaged"), "--refractive", *QUICK)
-
     def test_the_dense_scene_keeps_its_housing(self):
         self.import_scene("water", "again")
         self.densify("again", "--refractive", *QUICK)
         self.assertEqual(json.loads(read(self.path("again", "scene_dense.housing.json"))),
                          json.loads(read(self.path("again", "scene.housing.json"))))
         before = read(self.path("again", "scene_dense.ply"))
-        said = self.succeeds("DensifyPointCloud", "-i", "scene_dense.mvs", "-w", self.path("again"),
-                             "--refractive", *QUICK).stdout
-        self.assertIn("All 4 depth maps exist already", said)
+        self.assertIn("All 4 depth maps exist already",
+                      self.densify("again", "--refractive", *QUICK, scene="scene_dense.mvs"))
         self.assertEqual(read(self.path("again", "scene_dense_dense.ply")), before)
         self.densify("again", "--camera-model", "pinhole", *QUICK)
         self.assertNotIn("scene_dense.housing.json", files_below(self.path("again")))
@@ -226,8 +203,8 @@ class EndToEnd(SceneTest):
 
     def kill_when_finished(self, folder, file):
         process = subprocess.Popen(
-            [os.path.join(BIN, "DensifyPointCloud"), "-i", "scene.mvs", "-w", self.path(folder),
-             "--refractive", *ALL_STAGES], stdout=subprocess.DEVNULL)
+            [os.path.join(BIN, "DensifyPointCloud"), *self.command(folder, "--refractive", *ALL_STAGES)[1:]],
+            stdout=subprocess.DEVNULL)
         # Polls for the file. If it never appears, the assertion below fails.
         for _ in range(30000):
             if os.path.exists(self.path(folder, file)) or process.poll() is not None:
@@ -237,10 +214,10 @@ class EndToEnd(SceneTest):
         self.assertEqual(process.wait(), -signal.SIGKILL, "the run ended before it could be killed")
 
 
-class ThroughTheWaterSurface(SceneTest):
+class ThroughTheWaterSurface(CloseUp):
     """Cameras in air above the same scene, ten times as large: 3 to 4 m above a calm water surface,
     with 4 m of water below it."""
-    SCENE = ("--scale", "10", "--water-level", "4")
+    SCENE = (*FINE, "--scale", "10", "--water-level", "4")
 
     def densify_quickly(self, folder, *arguments):
         return self.densify(folder, *arguments, "--number-views-fuse", "2", *QUICK)
@@ -248,7 +225,7 @@ class ThroughTheWaterSurface(SceneTest):
     def reconstructed(self, medium, folder, *arguments):
         self.import_scene(medium, folder)
         self.densify_quickly(folder, *arguments)
-        return self.evaluate(medium, folder)["accuracy"]
+        return self.scores(medium, folder)["accuracy"]
 
     def test_refraction_counts(self):
         air = self.reconstructed("air", "air")
@@ -264,7 +241,6 @@ class ThroughTheWaterSurface(SceneTest):
         # than the glass of any housing.
         self.assertIn("All 4 depth maps exist already",
                       self.densify_quickly("obeyed", "--refractive"))
-
 
 
 if __name__ == "__main__":

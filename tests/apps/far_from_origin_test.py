@@ -5,13 +5,13 @@ import json
 import math
 import os
 import re
-import struct
-import tempfile
+import unittest.mock
 
 import tiny_scene
-from places import (FAR, FAR_AND_ODD, added, centres_of, move_mesh, move_model, points_of, positions,
-                    split_ply)
-from programs import ProgramTest, cloud_size, main, read, run, write
+from places import FAR, FAR_AND_ODD, move_mesh, move_model
+from programs import ProgramTest, main, must, read, write
+from readers import Ply, added, centres_of, points_of
+from worlds import CLOSEUP, ROUGH, Simulated, geo_offset, housing, lake
 
 QUICK = ("--resolution-level", "1", "--min-resolution", "100", "--geometric-iters", "1")
 
@@ -34,21 +34,26 @@ class BitForBit(ProgramTest):
     def setUp(self):
         super().setUp()
         snap = lambda v: tuple(round(4096 * c) / 4096 for c in v)
-        before = tiny_scene.CENTRES, tiny_scene.sparse_points
         snapped = [(snap(x), views) for x, views in tiny_scene.sparse_points()]
-        tiny_scene.CENTRES = [snap(c) for c in before[0]]
-        tiny_scene.sparse_points = lambda: snapped
-        try:
+        with (unittest.mock.patch.object(tiny_scene, "CENTRES", [snap(c) for c in tiny_scene.CENTRES]),
+              unittest.mock.patch.object(tiny_scene, "sparse_points", lambda: snapped)):
             tiny_scene.write_colmap(self.path("near"))
-        finally:
-            tiny_scene.CENTRES, tiny_scene.sparse_points = before
         move_model(self.path("near", "sparse"), self.path("far", "sparse"), FAR)
         os.symlink(self.path("near", "images"), self.path("far", "images"))
 
+    def densify(self, name, scene, *arguments):
+        return self.succeeds("DensifyPointCloud", "-i", scene, "-w", self.path(name), "--resolution-level", "0",
+                             "--min-resolution", "48", *arguments)
+
+    def ply(self, *name):
+        return Ply(read(self.path(*name)))
+
+    def check_offset(self, *name):
+        self.assertEqual(json.loads(read(self.path(*name))), json.loads(geo_offset(*FAR)))
+
     def make(self, name):
         self.succeeds("InterfaceCOLMAP", "-i", self.path(name))
-        return self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path(name),
-                             "--resolution-level", "0", "--min-resolution", "48")
+        return self.densify(name, "scene.mvs")
 
     def test_the_same_bytes(self):
         self.make("near")
@@ -59,108 +64,89 @@ class BitForBit(ProgramTest):
         for name in ("scene.mvs", "scene_dense.mvs", "depth0000.dmap"):
             self.assertEqual(read(self.path("far", name)), read(self.path("near", name)), name)
         for name in ("scene.geo.json", "scene_dense.geo.json"):
-            self.assertEqual(json.loads(read(self.path("far", name))),
-                             {"version": 1, "geo_offset": list(FAR)})
-        near = split_ply(read(self.path("near", "scene_dense.ply")))
-        far = split_ply(read(self.path("far", "scene_dense.ply")))
-        self.assertGreater(cloud_size(read(self.path("far", "scene_dense.ply"))), 500)
-        self.assertEqual((near[0], None, near[2]), (far[0], near[1], far[2]))
-        self.assertEqual(far[1], FAR)
+            self.check_offset("far", name)
+        near, far = (self.ply(name, "scene_dense.ply") for name in ("near", "far"))
+        self.assertGreater(len(far.points), 500)
+        self.assertEqual((near.header, near.body), (far.header, far.body))
+        self.assertEqual((near.offset, far.offset), (None, FAR))
 
     def test_doubles_are_in_the_world(self):
         self.make("far")
-        local = positions(read(self.path("far", "scene_dense.ply")))
-        self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path("far"),
-                      "--resolution-level", "0", "--min-resolution", "48",
-                      "--output-precision", "double")
-        cloud = read(self.path("far", "scene_dense.ply"))
-        self.assertIsNone(split_ply(cloud)[1])
-        self.assertEqual(positions(cloud), local)
+        local = self.ply("far", "scene_dense.ply").places
+        self.densify("far", "scene.mvs", "--output-precision", "double")
+        cloud = self.ply("far", "scene_dense.ply")
+        self.assertIsNone(cloud.offset)
+        self.assertEqual(cloud.places, local)
         self.refuses("--output-precision half: must be one of float, double", "DensifyPointCloud",
                      "-i", self.path("far", "scene.mvs"), "--output-precision", "half")
 
     def test_a_dense_scene_again(self):
         self.make("far")
-        self.succeeds("DensifyPointCloud", "-i", "scene_dense.mvs", "-w", self.path("far"),
-                      "--resolution-level", "0", "--min-resolution", "48", "-o", "again.mvs")
-        self.assertEqual(split_ply(read(self.path("far", "again.ply"))),
-                         split_ply(read(self.path("far", "scene_dense.ply"))))
-        self.assertEqual(read(self.path("far", "again.geo.json")),
-                         read(self.path("far", "scene.geo.json")))
+        self.densify("far", "scene_dense.mvs", "-o", "again.mvs")
+        again, first = (self.ply("far", name) for name in ("again.ply", "scene_dense.ply"))
+        self.assertEqual((again.header, again.offset, again.body), (first.header, first.offset, first.body))
+        self.assertEqual(read(self.path("far", "again.geo.json")), read(self.path("far", "scene.geo.json")))
 
     def test_an_older_offset_goes(self):
         self.make("far")
-        self.succeeds("InterfaceCOLMAP", "-i", self.path("near"), "-o",
-                      self.path("far", "scene.mvs"))
+        self.succeeds("InterfaceCOLMAP", "-i", self.path("near"), "-o", self.path("far", "scene.mvs"))
         self.assertFalse(os.path.exists(self.path("far", "scene.geo.json")))
-        self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path("far"),
-                      "--resolution-level", "0", "--min-resolution", "48")
+        self.densify("far", "scene.mvs")
         self.assertFalse(os.path.exists(self.path("far", "scene_dense.geo.json")))
-        self.assertIsNone(split_ply(read(self.path("far", "scene_dense.ply")))[1])
+        self.assertIsNone(self.ply("far", "scene_dense.ply").offset)
 
     def test_a_scene_of_another_program(self):
         """Its poses are double, its points float. Reading moves both into a local frame."""
-        folder = self.path("other")
         centres = [added(c, FAR) for c in tiny_scene.CENTRES]
         points = [(added(x, FAR), views) for x, views in tiny_scene.sparse_points()]
         for name, c, p in (("far", centres, points), ("near", None, None)):
             write(self.path("other", name + ".mvs"), tiny_scene.mvs(
                 [self.path("near", "images", image) for image in tiny_scene.names()], centres=c,
                 points=p))
-            result = self.succeeds("DensifyPointCloud", "-i", name + ".mvs", "-w", folder,
-                                   "--resolution-level", "0", "--min-resolution", "48")
-            for file in os.listdir(folder):
+            result = self.densify("other", name + ".mvs")
+            for file in os.listdir(self.path("other")):
                 if ".dmap" in file:
-                    os.remove(os.path.join(folder, file))
+                    os.remove(self.path("other", file))
             said = result.stdout + result.stderr
             self.assertEqual("a resolution of only 0.25 m" in said, name == "far", said)
-        self.assertEqual(json.loads(read(self.path("other", "far_dense.geo.json"))),
-                         {"version": 1, "geo_offset": list(FAR)})
-        near = read(self.path("other", "near_dense.ply"))
-        far = read(self.path("other", "far_dense.ply"))
-        self.assertEqual(split_ply(far)[1], FAR)
-        self.assertGreater(cloud_size(far), 0.9 * cloud_size(near))
+        self.check_offset("other", "far_dense.geo.json")
+        near, far = (self.ply("other", name) for name in ("near_dense.ply", "far_dense.ply"))
+        self.assertEqual(far.offset, FAR)
+        self.assertGreater(len(far.points), 0.9 * len(near.points))
 
 
-class FarScene(ProgramTest):
-    """The close-up scene at the origin and at two other places."""
+class FarScene(Simulated):
+    """The close-up scene at the origin and at two other places, with its cloud under water."""
+    SCENE = ("--preset", "closeup", *ROUGH)
     SHIFTS = {"near": (0.0, 0.0, 0.0), "far": FAR, "odd": FAR_AND_ODD}
 
     @classmethod
-    def setUpClass(cls):
-        shared = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.addClassCleanup(shared.cleanup)
-        cls.base = shared.name
-        made = run("SimulateUnderwater", "--preset", "closeup", "--coarseness", 4, "--views", 5,
-                   "--width", 320, "--height", 240, "--samples", 1, "-o", cls.at("scene"))
-        assert made.returncode == 0, made.stderr
+    def make(cls, folder):
+        super().make(folder)
         for name, shift in cls.SHIFTS.items():
-            move_model(cls.at("scene", "sparse"), cls.at(name, "sparse"), shift)
-            move_mesh(cls.at("scene", "mesh.ply"), cls.at(name, "mesh.ply"), shift)
-            cls.make(name)
+            move_model(os.path.join(cls.truth, "sparse"), cls.at(name, "sparse"), shift)
+            move_mesh(os.path.join(cls.truth, "mesh.ply"), cls.at(name, "mesh.ply"), shift)
+            for said in (cls.imported(cls.at(name, "scene.mvs"), "water", model=cls.at(name)),
+                         must("DensifyPointCloud", "-i", "scene.mvs", "-w", cls.at(name), "--refractive", *QUICK)):
+                assert "resolution of only" not in said, said
 
-    @classmethod
-    def at(cls, *parts):
-        return os.path.join(cls.base, *parts)
+    def back(self, name, places):
+        """Places of the scene `name` in the frame of the scene near the origin."""
+        shift = tuple(-c for c in self.SHIFTS[name])
+        if isinstance(places, dict):
+            return {key: added(place, shift) for key, place in places.items()}
+        return [added(place, shift) for place in places]
 
-    @classmethod
-    def make(cls, name):
-        """Makes the cloud under water, once for all cases."""
-        for command in (("InterfaceCOLMAP", "-i", cls.at(name), "--image-folder",
-                         cls.at("scene", "water"), "--housing", cls.at("scene", "housing.json"),
-                         "-o", cls.at(name, "scene.mvs")),
-                        ("DensifyPointCloud", "-i", "scene.mvs", "-w", cls.at(name),
-                         "--refractive", *QUICK)):
-            result = run(*command)
-            assert result.returncode == 0, result.stderr
-            assert "resolution of only" not in result.stdout, result.stdout
+    def same_places(self, found, wanted, within):
+        self.assertEqual(found.keys(), wanted.keys())
+        self.assertLess(max(math.dist(found[key], wanted[key]) for key in wanted), within)
 
     def evaluated(self, cloud, truth, *options):
         """The printed table, and the numbers of the JSON file."""
         result = self.succeeds(
-            "EvaluateReconstruction", "-i", self.at(cloud), "-m", self.at(truth, "mesh.ply"),
-            "--cameras", self.at(truth, "sparse"), "--housing", self.at("scene", "housing.json"),
-            "--tolerance", "0.002", "--samples", "10000", "--json", self.path("result.json"), *options, timeout=60)
+            "EvaluateReconstruction", "-i", self.at(cloud), "-m", self.at(truth, "mesh.ply"), "--cameras",
+            self.at(truth, "sparse"), *self.port("water"), "--tolerance", "0.002", "--samples", "10000", "--json",
+            self.path("result.json"), *options, timeout=60)
         self.assertNotIn("resolution is only", result.stdout)
         return (re.findall(r"(?:points to|truth to|^2 +\d\.\d+ +\d\.).*", result.stdout, re.M),
                 json.loads(read(self.path("result.json"))))
@@ -175,12 +161,10 @@ class FarScene(ProgramTest):
 
     def test_the_same_cloud(self):
         """Equal up to the rounding of poses, which changes a cloud as much as a shift by 3 nm."""
-        near = positions(read(self.at("near", "scene_dense.ply")))
+        near = Ply(read(self.at("near", "scene_dense.ply"))).places
         self.assertGreater(len(near), 5000)
         for name in ("far", "odd"):
-            cloud = read(self.at(name, "scene_dense.ply"))
-            back = tuple(-c for c in self.SHIFTS[name])
-            moved = [added(x, back) for x in positions(cloud)]
+            moved = self.back(name, Ply(read(self.at(name, "scene_dense.ply"))).places)
             self.assertLess(abs(len(moved) - len(near)), 0.001 * len(near), name)
             self.assertGreater(share_near(moved, near, 1e-6), 0.5, name)  # the median point
             self.assertGreater(share_near(moved, near, 1e-3), 0.95, name)
@@ -194,17 +178,17 @@ class FarScene(ProgramTest):
             self.assertEqual(result["views"], 5)
             self.assertAlmostEqual(result["accuracy"]["mean"], numbers["accuracy"]["mean"], delta=2e-6)
             # The same cloud and truth at another place give the same digits.
-            header, _, body = split_ply(read(self.at("near", "scene_dense.ply")))
+            near = Ply(read(self.at("near", "scene_dense.ply")))
             offset = "comment geo_offset " + " ".join(map(repr, self.SHIFTS[name]))
-            write(self.at(name, "moved.ply"),
-                  "\n".join(header[:2] + [offset] + header[2:]).encode() + body)
+            write(self.at(name, "moved.ply"), "\n".join(near.header[:2] + [offset] + near.header[2:]).encode()
+                  + b"\nend_header\n" + near.body)
             moved = self.evaluated(f"{name}/moved.ply", name)[0]
             if name == "far":
                 self.assertEqual(moved, table)
             self.says_nearly_the_same(moved, table)
         again = self.evaluated("far/moved.ply", "far", "--error-cloud", self.path("errors.ply"))
         self.assertEqual(again[0], table)
-        self.assertEqual(split_ply(read(self.path("errors.ply")))[1], FAR)
+        self.assertEqual(Ply(read(self.path("errors.ply"))).offset, FAR)
 
     def test_a_mesh_is_evaluated_as_fast(self):
         table = self.evaluated("near/mesh.ply", "near")[0]
@@ -229,18 +213,12 @@ class FarScene(ProgramTest):
         icp = self.evaluated("odd/scene_dense.ply", "odd", "--align", "icp", "--aligned",
                              self.path("aligned.ply"))[1]
         self.assertTrue(icp["align"]["converged"])
-        offset = split_ply(read(self.path("aligned.ply")))[1]
+        offset = Ply(read(self.path("aligned.ply"))).offset
         self.assertEqual([x % 10 for x in offset], [0, 0, 0])
         self.assertLess(math.dist(offset, FAR_AND_ODD), 15)
 
     def test_float_truth_is_said_to_be_coarse(self):
-        data = read(self.at("near", "mesh.ply"))
-        end = data.index(b"end_header\n") + len(b"end_header\n")
-        count = cloud_size(data)
-        places = struct.unpack_from(f"<{3 * count}d", data, end)
-        write(self.path("coarse.ply"), data[:end].replace(b"float64", b"float32") + struct.pack(
-            f"<{3 * count}f", *(x + FAR[i % 3] for i, x in enumerate(places))) +
-            data[end + 24 * count:])
+        move_mesh(self.at("near", "mesh.ply"), self.path("coarse.ply"), FAR, "float")
         result = self.succeeds("EvaluateReconstruction", "-i", self.at("far", "scene_dense.ply"),
                                "-m", self.path("coarse.ply"), "--samples", "100")
         self.assertIn("coarse.ply: its coordinates are float32 values of about 3378", result.stdout +
@@ -252,30 +230,25 @@ class FarScene(ProgramTest):
         first, *_, last = sorted(centres)
         known = f"images:{first},{last},{math.dist(centres[first], centres[last])!r}"
         models = {}
-        for name, shift in self.SHIFTS.items():
-            said = self.succeeds(
-                "RefinePoses", "-i", self.at(name), "--lens", self.at("scene", "sparse"),
-                "--housing", self.at("scene", "housing.json"), "-o", self.path(name),
-                "--scale-from", known, "-v", "3").stdout
+        for name in self.SHIFTS:
+            said = self.refined(name, self.path(name), known, "-v", "3")
             self.assertNotIn("Not converged", said)
-            back = tuple(-c for c in shift)
             report = json.loads(read(self.path(name, "report.json")))
-            iterations = [int(n) for n in re.findall(r"(\d+) iterations", said)]
             sparse = self.path(name, "sparse")
-            models[name] = ({k: added(v, back) for k, v in centres_of(sparse).items()},
-                            {k: added(v, back) for k, v in points_of(sparse).items()},
-                            report["rms_after_px"], iterations)
+            models[name] = (*(self.back(name, read_places(sparse)) for read_places in (centres_of, points_of)),
+                            report["rms_after_px"], [int(n) for n in re.findall(r"(\d+) iterations", said)])
         near = models["near"]
         for name in ("far", "odd"):
-            model = models[name]
-            self.assertEqual(len(model[3]), len(near[3]))
-            for a, b in zip(model[3], near[3]):
-                self.assertLessEqual(abs(a - b), 1, (model[3], near[3]))
-            self.assertAlmostEqual(model[2], near[2], delta=1e-6)
-            for k in (0, 1):
-                self.assertEqual(model[k].keys(), near[k].keys())
-                self.assertLess(max(math.dist(model[k][i], near[k][i]) for i in near[k]), 1e-6,
-                                name)
+            *places, rms, iterations = models[name]
+            for a, b in zip(iterations, near[3], strict=True):
+                self.assertLessEqual(abs(a - b), 1, (iterations, near[3]))
+            self.assertAlmostEqual(rms, near[2], delta=1e-6)
+            for found, wanted in zip(places, near):
+                self.same_places(found, wanted, 1e-6)
+
+    def refined(self, model, out, scale, *more):
+        return self.succeeds("RefinePoses", "-i", self.at(model), "--lens", os.path.join(self.truth, "sparse"),
+                             *self.port("water"), "-o", out, "--scale-from", scale, *more).stdout
 
     def test_known_positions_place_a_model(self):
         """A model at any place is moved to the positions of a survey."""
@@ -286,16 +259,10 @@ class FarScene(ProgramTest):
             write(self.path(name + ".txt"), survey)
         for model, place in (("near", "near"), ("near", "far"), ("far", "far"), ("far", "near")):
             out = self.path(model + "-to-" + place)
-            self.succeeds("RefinePoses", "-i", self.at(model), "--lens",
-                          self.at("scene", "sparse"), "--housing",
-                          self.at("scene", "housing.json"), "-o", out, "--scale-from",
-                          "positions:" + self.path(place + ".txt"))
-            back = tuple(-c for c in self.SHIFTS[place])
-            results[model, place] = {k: added(v, back) for k, v in
-                                     centres_of(os.path.join(out, "sparse")).items()}
-        wanted = results["near", "near"]
-        for which, centres in results.items():
-            self.assertLess(max(math.dist(centres[k], wanted[k]) for k in wanted), 1e-6, which)
+            self.refined(model, out, "positions:" + self.path(place + ".txt"))
+            results[model, place] = self.back(place, centres_of(os.path.join(out, "sparse")))
+        for centres in results.values():
+            self.same_places(centres, results["near", "near"], 1e-6)
 
     def test_aligned_models(self):
         for model, place in (("near", "odd"), ("odd", "near"), ("far", "odd")):
@@ -303,39 +270,30 @@ class FarScene(ProgramTest):
             said = self.succeeds("AlignModel", "-i", self.at(model, "sparse"), "--reference",
                                  self.at(place, "sparse"), "-o", out).stdout
             self.assertIn("RMS 0.000 mm, largest 0.000 mm", said)
-            for read_model in (centres_of, points_of):
-                moved, wanted = read_model(out), read_model(self.at(place, "sparse"))
-                self.assertLess(max(math.dist(moved[k], wanted[k]) for k in wanted), 1e-8)
+            for read_places in (centres_of, points_of):
+                self.same_places(read_places(out), read_places(self.at(place, "sparse")), 1e-8)
 
 
-class WaterSurface(ProgramTest):
+class WaterSurface(Simulated):
     """A housing file gives the water surface in world coordinates. It moves with the scene."""
+    SCENE = CLOSEUP
 
     def test_the_same_ports(self):
-        shared = self.path("scene")
-        made = run("SimulateUnderwater", "--preset", "closeup", "--coarseness", 4, "--views", 4,
-                   "--width", 160, "--height", 120, "--samples", 1, "--medium", "air", "--truth",
-                   "0", "-o", shared)
-        self.assertEqual(made.returncode, 0, made.stderr)
-        centres = centres_of(os.path.join(shared, "sparse"))
-        lowest = min(c[2] for c in centres.values()) - 0.1
+        sparse = os.path.join(self.truth, "sparse")
+        lowest = min(c[2] for c in centres_of(sparse).values()) - 0.1
         for name, shift in (("near", (0, 0, 0)), ("odd", FAR_AND_ODD)):
-            move_model(os.path.join(shared, "sparse"), self.path(name, "sparse"), shift)
-            surface = {"type": "water-surface", "normal": [0.1, 0, -1],
-                       "point_m": list(added((0, 0, lowest), shift)), "n_water": 1.333}
-            write(self.path(name, "lake.json"), json.dumps(
-                {"version": 1, "ports": {"lake": surface}, "default": "lake"}) + "\n")
-            self.succeeds("InterfaceCOLMAP", "-i", self.path(name), "--image-folder",
-                          os.path.join(shared, "air"), "--housing", self.path(name, "lake.json"),
-                          "-o", self.path(name, "scene.mvs"))
-            self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path(name),
-                          "--refractive", "--fusion-mode", "1", "--resolution-level", "0",
+            move_model(sparse, self.path(name, "sparse"), shift)
+            surface = lake(added((0, 0, lowest), shift), (0.1, 0, -1))
+            write(self.path(name, "lake.json"), housing(surface))
+            self.imported(self.path(name, "scene.mvs"), "air", model=self.path(name),
+                          port=("--housing", self.path(name, "lake.json")))
+            self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path(name), "--refractive",
+                          "--fusion-mode", "1", "--resolution-level", "1", "--min-resolution", "100",
                           "--geometric-iters", "0")
             written = json.loads(read(self.path(name, "scene_dense.housing.json")))
-            for a, b in zip(written["ports"]["lake"]["point_m"], surface["point_m"]):
+            for a, b in zip(written["ports"]["main"]["point_m"], surface["point_m"]):
                 self.assertAlmostEqual(a, b, delta=1e-9)
-        sides = [json.loads(read(self.path(name, "depth0000.dmap.json")))["port"]
-                 for name in ("near", "odd")]
+        sides = [json.loads(read(self.path(name, "depth0000.dmap.json")))["port"] for name in ("near", "odd")]
         self.assertAlmostEqual(sides[0]["distance_m"], sides[1]["distance_m"], delta=1e-7)
         self.assertGreater(sides[0]["distance_m"], 0.05)
 

@@ -8,22 +8,13 @@ import signal
 import subprocess
 import time
 
-from openmvs_scene import Scene
-from programs import BIN, contents, files_below, main, read, write
+from programs import BIN, contents, dead_process, files_below, main, read, write
+from worlds import Densified
 
 REFINE = ("--resolution-level", "1", "--min-resolution", "100", "-o", "refined.ply")
 
 
-def dead_process():
-    process = subprocess.Popen(["true"])
-    process.wait()
-    return process.pid
-
-
-class Killed(Scene):
-    MEDIA = ("water",)
-    SAMPLES = 1
-
+class Killed(Densified):
     def start(self, folder, program, *arguments):
         return subprocess.Popen([os.path.join(BIN, program), "-i", "scene_dense.mvs", "-w", folder,
                                  *arguments], stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)

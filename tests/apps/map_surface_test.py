@@ -2,68 +2,51 @@
 """MapSurface on the wall of tiny_scene.py: names of files, heights, colours, coordinates, wrong
 input."""
 
-import json
 import os
 import re
 
 from geotiff import read_geotiff
-from programs import contents, files_below, main, read, run, write
-from texture_mesh_test import mesh_ply, wall
-from tiny_scene import DISTANCE, TinyScene, texture
+from programs import files_below, main, read, run, write
+from tiny_scene import DISTANCE, texture
+from worlds import Wall, geo_offset, turned, wall
 
 MAPS = {"scene_map.dem.tif", "scene_map.ortho.tif", "scene_map.views.tif", "scene_map.sigma.tif", "scene_map.jpg"}
 
 
-class MapTest(TinyScene):
-    def setUp(self):
-        super().setUp()
-        self.mesh = self.path("work", "scene.ply")
-        write(self.mesh, mesh_ply(*wall()))
-
+class MapTest(Wall):
     def map(self, *arguments):
-        return ("MapSurface", "-i", self.scene, "-w", self.work, *arguments)
+        return self.command("MapSurface", *arguments)
 
     def read_map(self, name):
-        return read_geotiff(read(self.path("work", name)))
+        return read_geotiff(self.at(f"scene_map.{name}.tif"))
+
+    def maps(self):
+        return {name: self.at(name) for name in MAPS}
+
+    def nearly_equal(self, rows, others):
+        """Colours differ by at most 1: textures are cut out of the photographs at other places."""
+        self.assertLessEqual(max(abs(a - b) for r, s in zip(rows, others) for p, q in zip(r, s)
+                                 for a, b in zip(p, q)), 1)
 
 
 class Files(MapTest):
-    def test_a_refused_command_leaves_no_folder(self):
-        self.refuses("missing.mvs", "MapSurface", "-i", "missing.mvs", "-w", self.work, "-o", "new/dir/map")
-        self.assertFalse(os.path.exists(self.path("work", "new")))
-
     def test_names(self):
-        before = files_below(self.work)
-        self.succeeds(*self.map())
-        self.assertEqual(files_below(self.work) - before, MAPS)
+        self.assertEqual(self.makes(*self.map())[0], MAPS)
         self.succeeds(*self.map("-o", "new/a.v2", "--hillshade", "--contours", "0.1"))
-        self.assertLess({"new/a.v2." + end for end in
-                         ("dem.tif", "ortho.tif", "views.tif", "sigma.tif", "hillshade.tif", "contours.geojson", "jpg")},
-                        files_below(self.work))
+        ends = ("dem.tif", "ortho.tif", "views.tif", "sigma.tif", "hillshade.tif", "contours.geojson", "jpg")
+        self.assertLess({"new/a.v2." + end for end in ends}, files_below(self.work))
 
     def test_without_image_noise_there_are_no_expected_errors(self):
-        before = files_below(self.work)
-        self.succeeds(*self.map("--image-noise", "0"))
-        self.assertEqual(files_below(self.work) - before, MAPS - {"scene_map.sigma.tif"})
-
-    def test_any_number_of_threads_gives_the_same_bytes(self):
-        found = []
-        for threads in (1, 2):
-            self.succeeds(*self.map("--max-threads", threads, "--hillshade", "--contours", "0.1"))
-            found.append(contents(self.work))
-        self.assertEqual(found[0], found[1])
+        self.assertEqual(self.makes(*self.map("--image-noise", "0"))[0], MAPS - {"scene_map.sigma.tif"})
 
     def test_a_textured_mesh_gives_the_same_maps(self):
         self.succeeds(*self.map())
-        plain = {name: read(self.path("work", name)) for name in MAPS}
-        self.succeeds("TextureMesh", "-i", self.scene, "-w", self.work, "-o", "textured")
+        plain = self.maps()
+        self.succeeds(*self.command("TextureMesh", "-o", "textured"))
         self.succeeds(*self.map("-m", "textured.ply"))
         for name in ("scene_map.dem.tif", "scene_map.views.tif", "scene_map.sigma.tif"):
-            self.assertEqual(read(self.path("work", name)), plain[name], name)
-        one = read_geotiff(plain["scene_map.ortho.tif"]).rows
-        two = self.read_map("scene_map.ortho.tif").rows
-        self.assertLessEqual(max(abs(a - b) for r, s in zip(one, two) for p, q in zip(r, s)
-                                 for a, b in zip(p, q)), 1)
+            self.assertEqual(self.at(name), plain[name], name)
+        self.nearly_equal(read_geotiff(plain["scene_map.ortho.tif"]).rows, self.read_map("ortho").rows)
 
 
 class Pixels(MapTest):
@@ -74,8 +57,7 @@ class Pixels(MapTest):
         said = self.succeeds(*self.map()).stdout
         self.assertIn("map's x: 1.0000 0.0000 0.0000, y: 0.0000 -1.0000 0.0000, up: 0.0000 0.0000 -1.0000",
                       re.sub(r"-(0\.0000)", r"\1", said))
-        dem, ortho, views = (self.read_map(f"scene_map.{name}.tif")
-                             for name in ("dem", "ortho", "views"))
+        dem, ortho, views = (self.read_map(name) for name in ("dem", "ortho", "views"))
         self.assertEqual(dem.pixel, 0.011)  # 1 m / 90 px
         value, errors, most = texture(), [], 0
         for row, heights in enumerate(dem.rows):
@@ -95,63 +77,24 @@ class Pixels(MapTest):
         # A displacement of half a pixel would give an RMS of 12 grey levels.
         self.assertLess((sum(e * e for e in errors) / len(errors)) ** 0.5, 8)
 
-    def test_expected_errors(self):
-        # They are unknown where fewer than two photographs see the place, and otherwise at least a
-        # third of a photograph's pixel, of 1 m / 90.
-        self.succeeds(*self.map("--image-noise", "0.2"))
-        dem, views, sigma = (self.read_map(f"scene_map.{name}.tif")
-                             for name in ("dem", "views", "sigma"))
-        known = 0
-        for a, b, c in zip(dem.rows, views.rows, sigma.rows):
-            for height, count, error in zip(a, b, c):
-                self.assertEqual(error == -9999, height == -9999 or count < 2)
-                if error != -9999:
-                    known += 1
-                    self.assertGreater(error, 0.33 * 0.9 / 90)
-                    self.assertLess(error, 0.1)
-        self.assertGreater(known, 1000)
-
     def test_the_length_of_up_has_no_effect(self):
         found = set()
         for up in ("0,0,-1", "0,0,-1e300", "0,0,-1e-300"):
             self.succeeds(*self.map("--up", up))
-            found.add(read(self.path("work", "scene_map.dem.tif")))
+            found.add(self.at("scene_map.dem.tif"))
         self.assertEqual(len(found), 1)
 
     def test_utm(self):
-        write(self.path("work", "scene.geo.json"),
-              json.dumps({"version": 1, "geo_offset": [500000, 4500000, 30]}))
-        header = "format ascii 1.0\ncomment geo_offset 500000 4500000 30"
-        write(self.mesh, read(self.mesh).decode().replace("format ascii 1.0", header))
+        write(self.path("work", "scene.geo.json"), geo_offset(500000, 4500000, 30))
+        self.put(*wall(), comments="comment geo_offset 500000 4500000 30\n")
         self.succeeds(*self.map("--gsd", "0.0125", "--epsg", "32631"))
         for name in ("dem", "ortho", "views"):
-            found = self.read_map(f"scene_map.{name}.tif")
+            found = self.read_map(name)
             self.assertAlmostEqual(found.left, 499999.7, 6)
             self.assertAlmostEqual(found.top, 4500000.3, 6)
             self.assertEqual((len(found.rows), len(found.rows[0])), (48, 48))
             self.assertIn(32631, found.keys)
-        self.assertEqual(self.read_map("scene_map.dem.tif").rows[20][20], 30 + DISTANCE)
-
-    def test_holes(self):
-        vertices, faces = wall()
-        write(self.mesh, mesh_ply(vertices, faces[:100] + faces[140:]))
-        self.succeeds(*self.map("--up", "0,0,-1", "--gsd", "0.0125"))
-        dem, ortho, views = (self.read_map(f"scene_map.{name}.tif")
-                             for name in ("dem", "ortho", "views"))
-        self.assertEqual((dem.nodata, views.nodata), ("-9999", "65535"))
-        holes = 0
-        for a, b, c in zip(dem.rows, ortho.rows, views.rows):
-            for height, color, count in zip(a, b, c):
-                self.assertEqual(height == -9999, count == 65535)
-                if height == -9999:
-                    holes += 1
-                    self.assertEqual(color, (0, 0, 0, 0))
-        self.assertEqual(holes, 40 * 16 // 2)
-
-
-def turned(faces):
-    """The same faces with their outside on the other side."""
-    return [face[::-1] for face in faces]
+        self.assertEqual(self.read_map("dem").rows[20][20], 30 + DISTANCE)
 
 
 def face_at(x, y, z, first, side=0.2):
@@ -165,25 +108,24 @@ class UpAndDown(MapTest):
     def test_a_mesh_that_is_inside_out_gives_the_same_map(self):
         said = self.succeeds(*self.map()).stdout
         self.assertNotIn("warning", said)
-        plain = {name: self.read_map(f"scene_map.{name}.tif") for name in ("dem", "views", "sigma", "ortho")}
+        plain = {name: self.read_map(name) for name in ("dem", "views", "sigma", "ortho")}
         vertices, faces = wall()
-        write(self.mesh, mesh_ply(vertices, turned(faces)))
+        self.put(vertices, turned(faces))
         said = self.succeeds(*self.map()).stdout
         self.assertIn("warning: " + self.mesh + ": the mesh is inside out: the cameras see 100 % of its faces from "
                       "behind; flip the faces in an editor", said)
         for name, expected in plain.items():
-            found = self.read_map(f"scene_map.{name}.tif")
+            found = self.read_map(name)
             if name != "ortho":
                 self.assertEqual(found.rows, expected.rows, name)
-            else:  # textures are cut out of the photographs at other places
-                self.assertLessEqual(max(abs(a - b) for r, s in zip(found.rows, expected.rows)
-                                         for p, q in zip(r, s) for a, b in zip(p, q)), 1)
+            else:
+                self.nearly_equal(found.rows, expected.rows)
 
     def test_a_textured_mesh_that_is_inside_out(self):
-        self.succeeds("TextureMesh", "-i", self.scene, "-w", self.work, "-o", "textured")
+        self.succeeds(*self.command("TextureMesh", "-o", "textured"))
         self.succeeds(*self.map("-m", "textured.ply"))
-        plain = {name: read(self.path("work", name)) for name in MAPS}
-        head, body = read(self.path("work", "textured.ply")).split(b"end_header\n")
+        plain = self.maps()
+        head, body = self.at("textured.ply").split(b"end_header\n")
         vertices = int(re.search(rb"element vertex (\d+)", head)[1])
         size = (len(body) - 12 * vertices) // int(re.search(rb"element face (\d+)", head)[1])
         flipped = body[:12 * vertices]
@@ -193,7 +135,7 @@ class UpAndDown(MapTest):
                         face[30:38] + face[22:30] + face[38:])
         write(self.path("work", "textured.ply"), head + b"end_header\n" + flipped)
         self.assertIn("the mesh is inside out", self.succeeds(*self.map("-m", "textured.ply")).stdout)
-        self.assertEqual({name: read(self.path("work", name)) for name in MAPS}, plain)
+        self.assertEqual(self.maps(), plain)
 
     def test_up_that_points_away_from_the_cameras_is_refused(self):
         for arguments in ((), ("--gsd", "0.0125")):
@@ -218,12 +160,12 @@ class FarFaces(MapTest):
     def setUp(self):
         super().setUp()
         self.succeeds(*self.map())
-        self.plain = {name: read(self.path("work", name)) for name in MAPS}
+        self.plain = self.maps()
 
     def check_same_maps(self, vertices, faces):
-        write(self.mesh, mesh_ply(vertices, faces))
+        self.put(vertices, faces)
         said = self.succeeds(*self.map()).stdout
-        self.assertEqual({name: read(self.path("work", name)) for name in MAPS}, self.plain)
+        self.assertEqual(self.maps(), self.plain)
         return said
 
     def test_a_vertex_that_no_face_uses(self):
@@ -240,7 +182,7 @@ class FarFaces(MapTest):
         """It does not tilt the map. A map of it, far larger than the photographs, is refused."""
         vertices, faces = wall()
         corners, face = face_at(80, 60, 200, len(vertices), side=0.05)
-        write(self.mesh, mesh_ply(vertices + corners, faces + [face]))
+        self.put(vertices + corners, faces + [face])
         self.refuses_and_keeps(f"{self.mesh}: the map would have 7306 x 5488 pixels of 0.011 m", *self.map())
         said = self.succeeds(*self.map("--gsd", "0.1")).stdout
         self.assertIn("up: 0.0000 0.0000 -1.0000", re.sub(r"-(0\.0000)", r"\1", said))
@@ -248,7 +190,8 @@ class FarFaces(MapTest):
 
 class WrongInput(MapTest):
     def test_one_line_that_names_the_fault(self):
-        for expected, *arguments in (
+        self.refuses_each(
+                self.map(),
                 ("--ground-sample-distance -1: must be from 0", "--ground-sample-distance", "-1"),
                 ("--ground-sample-distance nan", "--gsd", "nan"),
                 ("--ground-sample-distance 1e-08: the map would have", "--gsd", "1e-8"),
@@ -266,24 +209,18 @@ class WrongInput(MapTest):
                 ("--max-memory", "--max-memory", "20"),
                 ("--output-file .: must be the name of a file", "-o", "."),
                 ("none.ply: ", "-m", "none.ply"),
-                ("housing", "--refractive")):
-            self.refuses_and_keeps(expected, *self.map(*arguments))
+                ("housing", "--refractive"))
 
-    def test_wrong_meshes(self):
-        vertices, faces = wall(cells=2)
-        for expected, mesh in (("scene.ply: the mesh has no faces", (vertices, [])),
-                               ("scene.ply: does not belong to", wall(z=-DISTANCE)),
-                               ("scene.ply: the mesh has no area", ([(0, 0, 1)] * 3, [(0, 1, 2)]))):
-            write(self.mesh, mesh_ply(*mesh))
-            self.refuses_and_keeps(expected, *self.map())
+    def test_a_mesh_without_area(self):
+        self.put([(0, 0, 1)] * 3, [(0, 1, 2)])
+        self.refuses_and_keeps("scene.ply: the mesh has no area", *self.map())
 
     def test_an_input_is_not_overwritten(self):
         write(self.path("work", "mesh.dem.tif"), read(self.mesh))
         self.refuses_and_keeps("--output-file", *self.map("-m", "mesh.dem.tif", "-o", "mesh"))
 
     def test_a_texture_of_an_obj_is_not_overwritten(self):
-        self.succeeds("TextureMesh", "-i", self.scene, "-w", self.work, "-o", "textured",
-                      "--export-type", "obj")
+        self.succeeds(*self.command("TextureMesh", "-o", "textured", "--export-type", "obj"))
         os.rename(self.path("work", "textured_material_0_map_Kd.png"), self.path("work", "scene_map.jpg"))
         mtl = self.path("work", "textured.mtl")
         write(mtl, read(mtl).decode().replace("textured_material_0_map_Kd.png", "scene_map.jpg"))
@@ -310,10 +247,6 @@ class WrongInput(MapTest):
                 self.assertEqual(ended.stderr.count("\n"), 1, said)
                 self.assertNotRegex(ended.stderr, "TIFF|GDAL|VSI|CPL|Embree|bad_alloc", said)
         self.assertLessEqual({0, 1}, ends)
-
-    def test_help(self):
-        self.assertEqual(run("MapSurface").returncode, 1)
-        self.assertEqual(run("MapSurface", "--help").returncode, 0)
 
 
 if __name__ == "__main__":

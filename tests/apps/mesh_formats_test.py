@@ -7,15 +7,10 @@ import os
 import shutil
 import struct
 
-from programs import contents, files_below, main, read, write
-from texture_mesh_test import mesh_ply, wall
+from programs import contents, main, read, write
+from readers import Ply
 from tiny_scene import TinyScene
-from transform_case import matrix_text, ply_points
-
-
-def obj_text(vertices, faces):
-    return ("".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in vertices)
-            + "".join("f " + " ".join(str(i + 1) for i in face) + "\n" for face in faces))
+from worlds import matrix_text, obj, ply, wall
 
 
 def glb_bytes(gltf, binary):
@@ -49,8 +44,9 @@ class Formats(TinyScene):
         super().setUp()
         vertices, faces = wall(cells=8, half=0.25)  # exact in float
         vertices = [(x, y, z + i * 7 % 3 / 64) for i, (x, y, z) in enumerate(vertices)]
-        self.put("m.ply", mesh_ply(vertices, faces))
-        self.put("m.obj", obj_text(vertices, faces))
+        self.put("m.ply", ply(vertices, faces))
+        self.put("m.obj", obj(vertices, faces))
+        self.put("cloud.ply", ply(wall(cells=8, half=0.25)[0]))
         gltf, binary = gltf_parts(vertices, faces)
         self.put("n.glb", glb_bytes(gltf, binary))
         gltf["buffers"][0]["uri"] = "the%20mesh.bin"
@@ -62,44 +58,42 @@ class Formats(TinyScene):
 
     def outputs(self, program, mesh, option="-m", *arguments):
         """The files that the program makes from the mesh, and removes them."""
-        before = files_below(self.work)
-        self.succeeds(program, "-i", self.scene, "-w", self.work, option, mesh, "-o", "out.mvs"
-                      if program == "TransformScene" else "out", *arguments)
-        new = files_below(self.work) - before
-        self.assertTrue(new)
-        found = {name: read(self.path("work", name)) for name in new}
-        for name in new:
-            os.remove(self.path("work", name))
+        name = "out.mvs" if program == "TransformScene" else "out"
+        found, _ = self.new_files(self.work, *self.command(program, option, mesh, "-o", name, *arguments))
+        self.assertTrue(found)
+        for made in found:
+            os.remove(self.path("work", made))
         return found
 
-    def same_for_all(self, program, option="-m", *arguments):
-        expected = self.outputs(program, "m.ply", option, *arguments)
-        for mesh in ("m.obj", "m.gltf", "n.glb"):
-            with self.subTest(program=program, mesh=mesh):
-                self.assertEqual(self.outputs(program, mesh, option, *arguments), expected)
+    def page(self, mesh):
+        """The files of a page about the mesh and its textures."""
+        page = self.path("page")
+        self.succeeds(*self.command("ViewScene", "-p", "cloud.ply", "-m", mesh, "--report", page))
+        found = {name: data for name, data in contents(page).items() if "mesh" in name or "texture" in name}
+        self.assertTrue(found)
+        shutil.rmtree(page)
+        return found
+
+    def moved_points(self, mesh):
+        found = self.outputs("TransformScene", mesh, "-m", "-t", self.path("t.txt"))
+        return Ply(found["out_mesh.ply"]).points
 
 
 class Untextured(Formats):
-    def test_texture_mesh(self):
-        self.same_for_all("TextureMesh")
-
-    def test_refine_mesh(self):
-        self.same_for_all("RefineMesh", "-m", "--max-views", 2, "--scales", 1)
-
-    def test_reconstruct_mesh(self):
-        self.same_for_all("ReconstructMesh", "--mesh-file", "--remove-spurious", 0)
-
-    def test_map_surface(self):
-        self.same_for_all("MapSurface")
+    def test_every_format_gives_the_same(self):
+        for program, *arguments in (("TextureMesh", "-m"), ("RefineMesh", "-m", "--max-views", 2, "--scales", 1),
+                                    ("ReconstructMesh", "--mesh-file", "--remove-spurious", 0), ("MapSurface", "-m")):
+            expected = self.outputs(program, "m.ply", *arguments)
+            for mesh in ("m.obj", "m.gltf", "n.glb"):
+                with self.subTest(program=program, mesh=mesh):
+                    self.assertEqual(self.outputs(program, mesh, *arguments), expected)
 
     def test_transform_scene(self):
         write(self.path("t.txt"), matrix_text(2.5))
-        move = ("-t", self.path("t.txt"))
-        expected, _ = ply_points(self.outputs("TransformScene", "m.ply", "-m", *move)["out_mesh.ply"])
+        expected = self.moved_points("m.ply")
         for mesh in ("m.obj", "m.gltf", "n.glb"):
-            found, _ = ply_points(self.outputs("TransformScene", mesh, "-m", *move)["out_mesh.ply"])
-            for a, b in zip(found, expected, strict=True):
-                self.assertLess(max(abs(p - q) for p, q in zip(a, b)), 1e-6)
+            for a, b in zip(self.moved_points(mesh), expected, strict=True):
+                self.near(a, b, 1e-6)
 
     def test_evaluate_reconstruction(self):
         reports = []
@@ -113,25 +107,14 @@ class Untextured(Formats):
         self.assertEqual([report["accuracy"] for report in reports[1:]], 3 * [reports[0]["accuracy"]])
 
     def test_view_scene(self):
-        pages = []
-        self.put("cloud.ply", mesh_ply(wall(cells=8, half=0.25)[0], []))
-        for mesh in ("m.ply", "m.obj", "m.gltf", "n.glb"):
-            page = self.path("page")
-            self.succeeds("ViewScene", "-i", self.scene, "-w", self.work, "-p", "cloud.ply", "-m", mesh,
-                          "--report", page)
-            pages.append({name: data for name, data in contents(page).items() if "mesh" in name})
-            self.assertTrue(pages[-1])
-            shutil.rmtree(page)
+        pages = [self.page(mesh) for mesh in ("m.ply", "m.obj", "m.gltf", "n.glb")]
         self.assertEqual(pages[1:], 3 * [pages[0]])
 
     def test_files_of_the_mesh_are_not_replaced(self):
-        before = contents(self.work)
-        self.put("y.gltf", read(self.path("work", "m.gltf")).replace(b"the%20mesh", b"x"))
-        self.put("x.bin", read(self.path("work", "the mesh.bin")))
-        self.refuses("x.bin", "TextureMesh", "-i", self.scene, "-w", self.work, "-m", "y.gltf", "-o",
-                     "x", "--export-type", "gltf")
-        self.assertEqual({name: data for name, data in contents(self.work).items()
-                          if name not in ("x.bin", "y.gltf")}, before)
+        self.put("y.gltf", self.at("m.gltf").replace(b"the%20mesh", b"x"))
+        self.put("x.bin", self.at("the mesh.bin"))
+        self.refuses_and_keeps("x.bin", *self.command("TextureMesh", "-m", "y.gltf", "-o", "x", "--export-type",
+                                                      "gltf"))
 
 
 class Textured(Formats):
@@ -139,11 +122,10 @@ class Textured(Formats):
 
     def setUp(self):
         super().setUp()
-        self.succeeds("TextureMesh", "-i", self.scene, "-w", self.work, "-m", "m.ply", "-o", "t",
-                      "--export-type", "ply,obj,glb,gltf")
-        gltf = json.loads(read(self.path("work", "t.gltf")))
+        self.succeeds(*self.command("TextureMesh", "-m", "m.ply", "-o", "t", "--export-type", "ply,obj,glb,gltf"))
+        gltf = json.loads(self.at("t.gltf"))
         del gltf["buffers"][0]["uri"]
-        self.put("e.glb", glb_bytes(gltf, read(self.path("work", "t.bin"))))
+        self.put("e.glb", glb_bytes(gltf, self.at("t.bin")))
 
     def test_maps(self):
         maps = [self.outputs("MapSurface", mesh) for mesh in ("t.glb", "t.gltf", "e.glb")]
@@ -157,30 +139,18 @@ class Textured(Formats):
             found = self.outputs("TransformScene", mesh, "-m", "-t", self.path("t.txt"))
             self.assertLess({"out.mvs", "out_mesh.ply", "out_mesh0.png"}, set(found) | {""})
             self.assertIn(b"comment TextureFile out_mesh0.png\n", found["out_mesh.ply"])
-        self.refuses("t_gltf0.png", "TransformScene", "-i", self.scene, "-w", self.work, "-m", "e.glb",
-                     "-t", self.path("t.txt"), "-o", "t.mvs", "--transform-out",
-                     self.path("work", "t_gltf0.png"))
+        self.refuses_and_keeps("t_gltf0.png", *self.command("TransformScene", "-m", "e.glb", "-t", self.path("t.txt"),
+                                                            "-o", "t.mvs", "--transform-out",
+                                                            self.path("work", "t_gltf0.png")))
 
-    def test_pages_and_rendered_pictures(self):
-        pages = []
-        for mesh in ("t.gltf", "e.glb"):
-            page = self.path("page" + mesh)
-            self.put("cloud.ply", mesh_ply(wall(cells=8, half=0.25)[0], []))
-            self.succeeds("ViewScene", "-i", self.scene, "-w", self.work, "-p", "cloud.ply", "-m", mesh,
-                          "--report", page)
-            pages.append({name: data for name, data in contents(page).items()
-                          if "mesh" in name or "texture" in name})
-        self.assertEqual(pages[0], pages[1])
+    def test_pages(self):
+        self.assertEqual(self.page("t.gltf"), self.page("e.glb"))
 
     def test_their_pictures_are_not_replaced(self):
-        before = contents(self.work)
-        self.put("u.gltf", read(self.path("work", "t.gltf")).replace(b'"t.bin"', b'"u.bin"'))
-        self.put("u.bin", read(self.path("work", "t.bin")))
-        self.refuses("t_gltf0.png", "TextureMesh", "-i", self.scene, "-w", self.work, "-m", "u.gltf",
-                     "-o", "t", "--export-type", "gltf")
-        os.remove(self.path("work", "u.gltf"))
-        os.remove(self.path("work", "u.bin"))
-        self.assertEqual(contents(self.work), before)
+        self.put("u.gltf", self.at("t.gltf").replace(b'"t.bin"', b'"u.bin"'))
+        self.put("u.bin", self.at("t.bin"))
+        self.refuses_and_keeps("t_gltf0.png", *self.command("TextureMesh", "-m", "u.gltf", "-o", "t", "--export-type",
+                                                            "gltf"))
 
 
 if __name__ == "__main__":

@@ -5,12 +5,10 @@ the close-up scene, with true poses."""
 import json
 import os
 import shutil
-import tempfile
 
-from programs import ProgramTest, depth_rows, main, read, run, write
+from programs import depth_rows, main, must, read, write
+from worlds import CLOSEUP, Simulated
 
-SCENE = ("--preset", "closeup", "--coarseness", 4, "--views", 5, "--width", 320, "--height", 240,
-         "--seed", 1, "--samples", 1, "--truth", 0)
 DOME = ("--dome-radius", 0.05, "--dome-x", 0.003, "--dome-y", -0.004, "--dome-z", 0.006)
 VIEWS = [f"{i:04}.jpg" for i in range(5)]
 PORTS = ["flat", "dome", "none", "flat", "dome"]  # of the mixed scene's views
@@ -18,16 +16,14 @@ FULL = ("--resolution-level", 0, "--number-views-fuse", 2)
 QUICK = ("--resolution-level", 1, "--min-resolution", 100, "--geometric-iters", 1)
 
 
-class MixedPortsTest(ProgramTest):
+class MixedPortsTest(Simulated):
+    SCENE = CLOSEUP
+
     @classmethod
-    def setUpClass(cls):
-        shared = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.addClassCleanup(shared.cleanup)
-        cls.flat, cls.dome, cls.mixed = (os.path.join(shared.name, name)
-                                         for name in ("flat", "dome", "mixed"))
-        for folder, port in ((cls.flat, ()), (cls.dome, (*DOME, "--medium", "water"))):
-            made = run("SimulateUnderwater", *SCENE, *port, "-o", folder)
-            assert made.returncode == 0, made.stderr
+    def make(cls, folder):
+        super().make(folder)
+        cls.flat, cls.dome, cls.mixed = cls.truth, cls.at("dome"), cls.at("mixed")
+        must("SimulateUnderwater", *CLOSEUP, *DOME, "--medium", "water", "-o", cls.dome)
         cls.make_mixed()
 
     @classmethod
@@ -43,9 +39,8 @@ class MixedPortsTest(ProgramTest):
             {"version": 1, "ports": ports, "default": "none", "images": dict(zip(VIEWS, PORTS))}))
 
     def import_scene(self, truth, folder, model=None):
-        self.succeeds("InterfaceCOLMAP", "-i", model or truth, "--image-folder", os.path.join(truth, "water"),
-                      "--housing", os.path.join(truth, "housing.json"), "-o",
-                      self.path(folder, "scene.mvs"))
+        self.imported(self.path(folder, "scene.mvs"), os.path.join(truth, "water"), model=model or truth,
+                      port=("--housing", os.path.join(truth, "housing.json")))
 
     def densify(self, folder, *arguments):
         return self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path(folder),

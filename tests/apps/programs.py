@@ -44,6 +44,20 @@ def run(program, *arguments, file_size_limit=None, address_space=None, cwd=None,
     return execute(command)
 
 
+def must(program, *arguments, **options):
+    """Runs a program that has to succeed, and returns its standard output. For setUpClass."""
+    result = run(program, *arguments, **options)
+    assert result.returncode == 0, f"{program} {arguments}: {result.stderr}"
+    return result.stdout
+
+
+def dead_process():
+    """The id of a process that has ended."""
+    process = subprocess.Popen(["true"])
+    process.wait()
+    return process.pid
+
+
 def files_below(folder):
     return {os.path.relpath(os.path.join(path, name), folder)
             for path, _, names in os.walk(folder) for name in names}
@@ -65,15 +79,22 @@ def contents(folder):
     return {name: read(os.path.join(folder, name)) for name in files_below(folder)}
 
 
-def grey_png(rows):
-    """The bytes of an 8-bit grey PNG; `rows` are bytes of equal length."""
+def png(rows, color_type=0, bits=8):
+    """The bytes of a PNG. Each of `rows` holds its samples in the byte order of the format. `color_type`:
+    0 grey, 2 RGB, 6 RGBA."""
     def chunk(kind, data):
         body = kind + data
         return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
-    header = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 0, 0, 0, 0)
-    pixels = zlib.compress(b"".join(b"\0" + row for row in rows))
+    width = 8 * len(rows[0]) // bits // {0: 1, 2: 3, 6: 4}[color_type]
+    header = struct.pack(">IIBBBBB", width, len(rows), bits, color_type, 0, 0, 0)
+    pixels = zlib.compress(b"".join(b"\0" + bytes(row) for row in rows))
     return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", pixels)
             + chunk(b"IEND", b""))
+
+
+def grey_png(rows):
+    """The bytes of an 8-bit grey PNG; `rows` are bytes of equal length."""
+    return png(rows)
 
 
 def depth_rows(dmap):
@@ -115,6 +136,29 @@ class ProgramTest(unittest.TestCase):
         self.assertIn(expected, result.stderr, said)
         self.assertEqual(files_below(self.folder) - before, set(), said)
         return result
+
+    def refuses_and_keeps(self, expected, *command, **options):
+        """As refuses(), and no file is changed."""
+        before = contents(self.folder)
+        result = self.refuses(expected, *command, **options)
+        self.assertEqual(contents(self.folder), before, command)
+        return result
+
+    def refuses_each(self, command, *cases):
+        """`cases`: the expected text and the arguments behind `command`."""
+        for expected, *arguments in cases:
+            with self.subTest(arguments=arguments):
+                self.refuses_and_keeps(expected, *command, *arguments)
+
+    def new_files(self, folder, *command):
+        """The names and contents of the files that a command adds to a folder, and its output."""
+        before = files_below(folder)
+        said = self.succeeds(*command).stdout
+        return {name: read(os.path.join(folder, name)) for name in files_below(folder) - before}, said
+
+    def near(self, found, expected, within):
+        for a, b in zip(found, expected, strict=True):
+            self.assertLess(abs(a - b), within)
 
 
 def main():

@@ -4,19 +4,17 @@ views of 512 x 384 of the close-up scene, with true poses."""
 
 import os
 
-from close_up import GSD, QUICK, SceneTest
+from close_up import FINE, GSD, QUICK, CloseUp
 from programs import files_below, main, read, write
 
 
 def under_water(lens):
-    return ("--medium", "water", "--truth", 0, "--lens", lens)
+    return (*FINE, "--medium", "water", "--truth", 0, "--lens", lens)
 
 
-class LensTest(SceneTest):
-    SCENE = None
-
+class LensTest(CloseUp):
     def errors(self, folder):
-        result = self.evaluate("water", folder)
+        result = self.scores("water", folder)
         mean, recall = result["accuracy"]["mean"] / GSD, result["scores"][0]["recall"]
         print(f"measured: {type(self).__name__} {folder} mean {mean:.4f} GSD, recall {recall:.3f}")
         return mean, recall
@@ -50,9 +48,8 @@ class OpencvLens(LensTest):
         # The dense scene has the lenses, too, so that a run on it keeps the existing maps.
         self.assertEqual(read(self.path("scene", "scene_dense.lenses.json")),
                          read(self.path("scene", "scene.lenses.json")))
-        again = self.succeeds("DensifyPointCloud", "-i", "scene_dense.mvs", "-w",
-                              self.path("scene"), "--refractive", *QUICK).stdout
-        self.assertIn("All 4 depth maps exist already", again)
+        self.assertIn("All 4 depth maps exist already",
+                      self.densify("scene", "--refractive", *QUICK, scene="scene_dense.mvs"))
         # Without the lenses, the image corners are off by 30 pixels.
         os.remove(self.path("scene", "scene.lenses.json"))
         ignored = self.densify("scene", "--refractive", *QUICK)
@@ -75,20 +72,18 @@ class OpencvLens(LensTest):
         self.assertIn("scene_dense.lenses.json", files_below(self.path("straight")))
 
     def test_images_in_air_are_undistorted_unless_told_otherwise(self):
-        self.import_scene("water", "air", "--undistort", "0", housing=False)
+        self.import_scene("water", "air", "--undistort", "0", port=())
         self.assertIn("scene.lenses.json", files_below(self.path("air")))
-        self.import_scene("water", "air", housing=False)
+        self.import_scene("water", "air", port=())
         self.assertIn("undistorted/0000.jpg", files_below(self.path("air")))
         self.assertNotIn("scene.lenses.json", files_below(self.path("air")))
 
     def test_what_cannot_be_done_is_said(self):
         self.import_scene("water", "wrong")
         for option in (("--projection", "line-search"), ("--warp", "homography")):
-            self.refuses("undistort the images first", "DensifyPointCloud", "-i", "scene.mvs", "-w",
-                         self.path("wrong"), "--refractive", *option, *QUICK)
+            self.refuses("undistort the images first", *self.command("wrong", "--refractive", *option, *QUICK))
         write(self.path("wrong", "scene.lenses.json"), '{ "version": 1 }\n')
-        self.refuses("scene.lenses.json", "DensifyPointCloud", "-i", "scene.mvs", "-w",
-                     self.path("wrong"), "--refractive", *QUICK)
+        self.refuses("scene.lenses.json", *self.command("wrong", "--refractive", *QUICK))
         for lens, reason in (("OPENCV,1", "must have 4 coefficients"),
                              ("PINHOLE,1,2,3,4", "must begin with OPENCV"),
                              ("OPENCV,0,0,0,x", "'x' is not a number"),

@@ -5,21 +5,15 @@ absent, and an error is one line."""
 import itertools
 import os
 import re
-import resource
 import shutil
 import struct
 import subprocess
 import tempfile
 
 import tiny_scene
-from programs import BIN, ProgramTest, contents, files_below, main, read, run, write
+from programs import BIN, ProgramTest, contents, dead_process, files_below, main, read, run, write
 from tiny_scene import DENSIFY, TinyScene
-
-
-def dead_process():
-    process = subprocess.Popen(["true"])
-    process.wait()
-    return process.pid
+from worlds import CLOSEUP, Simulated
 
 
 class ClosedStreams(TinyScene):
@@ -41,27 +35,6 @@ class ClosedStreams(TinyScene):
                 found = {name: data for name, data in contents(self.work).items()
                          if not name.endswith(".png")}
                 self.assertEqual(found, expected, closed)
-
-    def test_every_program(self):
-        cloud = self.path("mesh.ply")
-        write(cloud, "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-              "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
-              "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
-        sparse = self.path("colmap", "sparse")
-        for command, output in (
-                (("InterfaceCOLMAP", "-i", self.path("colmap")), "a.mvs"),
-                (("AlignModel", "-i", sparse, "--reference", sparse), "aligned"),
-                (("EvaluateReconstruction", "-i", cloud, "-m", cloud, "--json"), "a.json")):
-            made = []
-            for closed in ((), (1,), (0, 1, 2)):
-                path = self.path("without" + "".join(map(str, closed)), output)
-                os.makedirs(os.path.dirname(path), exist_ok=True)
-                option = () if command[-1] == "--json" else ("-o",)
-                ended = self.run_without(closed, *command, *option, path)
-                self.assertEqual(ended.returncode, 0, (command, closed, ended.stderr))
-                made.append(contents(path) if os.path.isdir(path) else read(path))
-            for other in made[1:]:
-                self.assertEqual(other, made[0], command)
 
     def test_errors_are_still_errors(self):
         for closed in ((1,), (2,), (0, 1, 2)):
@@ -94,8 +67,8 @@ class Pipes(TinyScene):
 class LongFields(TinyScene):
     def test_errors_are_short_lines(self):
         """Every kind of file, with fields that are long or hold control characters."""
+        sparse = self.path("colmap", "sparse")
         for field in ("x" * 5000, "x " * 2500, "\x01\x1b[2J" * 900, "\u20ac" * 3000):
-            sparse = self.path("colmap", "sparse")
             cases = [(self.path("a.ply"), f"ply\nformat {field} 1.0\nend_header\n",
                       ("EvaluateReconstruction", "-i", self.path("a.ply"), "-m", self.path("a.ply"))),
                      (os.path.join(sparse, "cameras.txt"), f"1 {field} 96 72 90 90 48 36\n",
@@ -121,19 +94,11 @@ class LongFields(TinyScene):
 class LittleMemory(TinyScene):
     def test_is_one_line(self):
         """From too little memory for loading the libraries up to enough memory."""
-
-        def limited(megabytes):
-            return lambda: resource.setrlimit(resource.RLIMIT_AS, (megabytes * 1000000,) * 2)
-
-        for command in (self.densify("-v", "0"),
-                        ("InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path("a.mvs"),
-                         "-v", "0")):
+        for command in (self.densify("-v", "0"), ("InterfaceCOLMAP", "-i", self.path("colmap"), "-o",
+                                                  self.path("a.mvs"), "-v", "0")):
             ends = []
             for megabytes in [*range(190, 230, 2), *range(230, 430, 20)]:
-                ended = subprocess.run(
-                    [os.path.join(BIN, command[0]), *command[1:]], text=True,
-                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60,
-                    preexec_fn=limited(megabytes))
+                ended = run(*command, address_space=megabytes * 1000000, timeout=60)
                 said = f"{command[0]} with {megabytes} MB: {ended.returncode} {ended.stderr!r}"
                 self.assertIn(ended.returncode, (0, 1, 127), said)  # 127: the loader failed
                 ends.append(ended.returncode)
@@ -150,8 +115,9 @@ class ManyObservations(ProgramTest):
 
     @classmethod
     def setUpClass(cls):
-        cls.scene_folder = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.work = cls.scene_folder.name
+        folder = tempfile.TemporaryDirectory(prefix="axial_")
+        cls.addClassCleanup(folder.cleanup)
+        cls.work = folder.name
         image = os.path.join(cls.work, "a.png")
         write(image, tiny_scene.picture((0, 0, 0)))
         centres = [(0.01 * i, 0, 0) for i in range(40)]
@@ -164,10 +130,6 @@ class ManyObservations(ProgramTest):
         at = len(empty) - (8 + 40 + 16 * 8 + 9 * 8 + 6 * 8)  # offset of the number of points
         write(os.path.join(cls.work, "scene.mvs"),
               empty[:at] + struct.pack("<Q", 120000) + points + empty[at + 8:])
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.scene_folder.cleanup()
 
     def run_with(self, megabytes, *arguments):
         """The exit code, standard error and peak memory [MB] of a run."""
@@ -182,11 +144,16 @@ class ManyObservations(ProgramTest):
             said.seek(0)
             return process.returncode, said.read(), usage.ru_maxrss * 1024 / 1e6
 
-    def test_is_planned_before_it_is_taken(self):
-        code, said, peak = self.run_with(150)
+    def is_refused(self, megabytes, *arguments):
+        """Checks that the run ends before it takes memory. Returns what it says."""
+        code, said, peak = self.run_with(megabytes, *arguments)
         self.assertEqual(code, 1, said)
+        self.assertLess(peak, min(120, megabytes))
+        return said
+
+    def test_is_planned_before_it_is_taken(self):
+        said = self.is_refused(150)
         self.assertIn("--max-memory 150: 150 MB are too little, this scene needs at least", said)
-        self.assertLess(peak, 120)
         needed = int(re.search(r"needs at least (\d+)", said)[1])
         code, said, peak = self.run_with(needed - 5)
         self.assertEqual(code, 1, said)
@@ -206,14 +173,9 @@ class ManyObservations(ProgramTest):
             file.write(header.encode())
             for _ in range(count // 10000):
                 file.write(struct.pack("<3fB2I", 0.2, 0.1, 1, 2, 0, 1) * 10000)
-        code, said, peak = self.run_with(350, "-p", self.path("cloud.ply"))
-        self.assertEqual(code, 1, said)
-        self.assertIn("--max-memory 350: 350 MB are too little, this scene needs at least", said)
-        self.assertLess(peak, 120)
-        code, said, peak = self.run_with(350, "-p", self.path("cloud.ply"), "--estimate-scale", "1",
-                                         "-o", self.path("sizes.mvs"))
-        self.assertEqual(code, 1, said)
-        self.assertLess(peak, 120)
+        self.assertIn("--max-memory 350: 350 MB are too little, this scene needs at least",
+                      self.is_refused(350, "-p", self.path("cloud.ply")))
+        self.is_refused(350, "-p", self.path("cloud.ply"), "--estimate-scale", "1", "-o", self.path("sizes.mvs"))
 
 
 class Leftovers(TinyScene):
@@ -248,39 +210,25 @@ class Leftovers(TinyScene):
     def test_of_other_programs(self):
         dead = dead_process()
         sparse = self.path("colmap", "sparse")
+        align = ("AlignModel", "-i", sparse, "--reference", sparse, "-o", self.path("b"))
         for command, place in (
-                (("InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path("a.mvs")),
-                 "a.{}.tmp.mvs"),
-                (("AlignModel", "-i", sparse, "--reference", sparse, "-o", self.path("b")),
-                 "b.{}.tmp/cameras.txt"),
-                (("AlignModel", "-i", sparse, "--reference", sparse, "-o", self.path("b")),
-                 "b/staging.{}.tmp/cameras.txt")):
+                (("InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path("a.mvs")), "a.{}.tmp.mvs"),
+                (align, "b.{}.tmp/cameras.txt"), (align, "b/staging.{}.tmp/cameras.txt")):
             write(self.path(place.format(dead)), "half")
             self.succeeds(*command)
             self.assertEqual([name for name in files_below(self.folder) if ".tmp" in name], [])
 
 
-class WholeFolders(ProgramTest):
-    @classmethod
-    def setUpClass(cls):
-        cls.made = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.model = cls.made.name
-        made = run("SimulateUnderwater", "--preset", "closeup", "--views", 5, "--width", 160,
-                   "--height", 120, "--coarseness", 4, "--samples", 1, "--truth", 0, "--medium",
-                   "water", "-o", cls.model)
-        assert made.returncode == 0, made.stderr
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.made.cleanup()
+class WholeFolders(Simulated):
+    SCENE = CLOSEUP
 
     def refine(self, out):
-        return ("RefinePoses", "-i", os.path.join(self.model, "sparse"), "--lens",
-                os.path.join(self.model, "sparse", "cameras.txt"), "--housing",
-                os.path.join(self.model, "housing.json"), "--poses", "known", "-o", out)
+        sparse = os.path.join(self.truth, "sparse")
+        return ("RefinePoses", "-i", sparse, "--lens", os.path.join(sparse, "cameras.txt"), *self.port("water"),
+                "--poses", "known", "-o", out)
 
     def align(self, out):
-        sparse = os.path.join(self.model, "sparse")
+        sparse = os.path.join(self.truth, "sparse")
         return ("AlignModel", "-i", sparse, "--reference", sparse, "-o", out)
 
     def test_on_a_full_disk(self):

@@ -1,57 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """TextureMesh on the wall of tiny_scene.py: names of files, formats, masks, wrong input."""
 
-import json
 import os
 import re
-import struct
 
 from programs import contents, files_below, grey_png, main, read, run, write
-from tiny_scene import DISTANCE, HEIGHT, NAN, WIDTH, TinyScene
+from readers import Glb
+from tiny_scene import HEIGHT, WIDTH
+from worlds import Wall, turned, wall
 
 
-def mesh_ply(vertices, faces):
-    """A PLY mesh in ascii."""
-    lines = ["ply", "format ascii 1.0", f"element vertex {len(vertices)}", "property float x",
-             "property float y", "property float z", f"element face {len(faces)}",
-             "property list uchar int vertex_indices", "end_header"]
-    lines += [" ".join(map(str, v)) for v in vertices]
-    lines += [" ".join(map(str, (len(f), *f))) for f in faces]
-    return "\n".join(lines) + "\n"
-
-
-def wall(z=DISTANCE, cells=12, half=0.3):
-    """A grid on the wall. Its outside looks at the cameras, to smaller z."""
-    at = lambda i: -half + 2 * half * i / cells
-    vertices = [(at(i), at(j), z) for j in range(cells + 1) for i in range(cells + 1)]
-    faces = []
-    for j in range(cells):
-        for i in range(cells):
-            a = j * (cells + 1) + i
-            b, c, d = a + 1, a + cells + 2, a + cells + 1
-            faces += [(a, d, c), (a, c, b)]
-    return vertices, faces
-
-
-class TextureTest(TinyScene):
-    def setUp(self):
-        super().setUp()
-        self.mesh = self.path("work", "scene.ply")
-        write(self.mesh, mesh_ply(*wall()))
-
+class TextureTest(Wall):
     def texture(self, *arguments):
-        return ("TextureMesh", "-i", self.scene, "-w", self.work, *arguments)
+        return self.command("TextureMesh", *arguments)
 
     def header(self, name):
-        return read(self.path("work", name)).split(b"end_header\n")[0].decode()
+        return self.at(name).split(b"end_header\n")[0].decode()
+
+    def faces(self, name):
+        return int(re.search("element face ([0-9]+)\n", self.header(name))[1])
 
 
 class Files(TextureTest):
     def test_default_names_are_those_of_openmvs(self):
-        before = files_below(self.work)
-        self.succeeds(*self.texture())
-        self.assertEqual(files_below(self.work) - before,
-                         {"scene_texture.ply", "scene_texture0.png"})
+        self.assertEqual(self.makes(*self.texture())[0], {"scene_texture.ply", "scene_texture0.png"})
         header = self.header("scene_texture.ply")
         self.assertIn("comment TextureFile scene_texture0.png\n", header)
         self.assertIn("element face 288\n", header)
@@ -65,9 +37,8 @@ class Files(TextureTest):
         told = f"warning: {self.mesh}: the mesh is inside out: the cameras see 100 % of its faces from behind"
         self.assertNotIn("inside out", self.succeeds(*self.texture()).stdout)
         vertices, faces = wall()
-        write(self.mesh, mesh_ply(vertices, [face[::-1] for face in faces]))
-        ended = run(*self.texture())
-        self.assertIn(told, ended.stdout)
+        self.put(vertices, turned(faces))
+        self.assertIn(told, run(*self.texture()).stdout)
 
     def test_missing_folders_are_made(self):
         self.succeeds(*self.texture("-o", "new/deep/out.ply"))
@@ -87,30 +58,19 @@ class Files(TextureTest):
             before = after
 
     def test_every_format_has_its_files(self):
-        before = files_below(self.work)
-        self.succeeds(*self.texture("-o", "out.mvs", "--export-type", "ply,obj,glb,gltf"))
-        self.assertEqual(files_below(self.work) - before,
-                         {"out.ply", "out.obj", "out.mtl", "out.glb", "out.gltf", "out.bin", "out0.png",
-                          "out_material_0_map_Kd.png", "out_gltf0.png"})
-        self.assertIn("mtllib out.mtl\n", read(self.path("work", "out.obj")).decode())
-        self.assertIn("map_Kd out_material_0_map_Kd.png\n", read(self.path("work", "out.mtl")).decode())
-        glb = read(self.path("work", "out.glb"))
-        gltf = json.loads(glb[20:20 + struct.unpack_from("<I", glb, 12)[0]])
-        indices = gltf["accessors"][gltf["meshes"][0]["primitives"][0]["indices"]]
-        self.assertEqual(indices["count"], 3 * 288)
+        made, _ = self.makes(*self.texture("-o", "out.mvs", "--export-type", "ply,obj,glb,gltf"))
+        self.assertEqual(made, {"out.ply", "out.obj", "out.mtl", "out.glb", "out.gltf", "out.bin", "out0.png",
+                                "out_material_0_map_Kd.png", "out_gltf0.png"})
+        self.assertIn(b"mtllib out.mtl\n", self.at("out.obj"))
+        self.assertIn(b"map_Kd out_material_0_map_Kd.png\n", self.at("out.mtl"))
+        glb = Glb(self.at("out.glb"))
+        self.assertEqual(len(glb.values(glb.json["meshes"][0]["primitives"][0]["indices"])), 3 * 288)
 
     def test_several_textures_have_numbers(self):
         self.succeeds(*self.texture("--max-texture-size", "64"))
         header = self.header("scene_texture.ply")
         self.assertGreater(len(re.findall("TextureFile scene_texture[0-9].png\n", header)), 1)
         self.assertIn("property int32 texnumber\n", header)
-
-    def test_any_number_of_threads_gives_the_same_bytes(self):
-        found = []
-        for threads in (1, 2):
-            self.succeeds(*self.texture("--max-threads", threads, "--export-type", "ply,glb"))
-            found.append(contents(self.work))
-        self.assertEqual(found[0], found[1])
 
     def test_a_limit_on_memory_does_not_change_the_bytes(self):
         self.succeeds(*self.texture("--export-type", "ply,glb"))
@@ -136,17 +96,12 @@ class Tiles(TextureTest):
                 for i in range(count) for extension in extensions}
 
     def test_each_tile_has_its_files_and_its_faces(self):
-        before = files_below(self.work)
-        said = self.succeeds(*self.texture("--tiles", "3", "--export-type", "ply,glb",
-                                           "--cost-smoothness-ratio", "100")).stdout
-        self.assertEqual(files_below(self.work) - before,
-                         self.tile_files(3, ".ply", ".glb", "0.png"))
-        faces = 0
+        made, said = self.makes(*self.texture("--tiles", "3", "--export-type", "ply,glb",
+                                              "--cost-smoothness-ratio", "100"))
+        self.assertEqual(made, self.tile_files(3, ".ply", ".glb", "0.png"))
         for name in self.tile_files(3, ".ply"):
-            header = self.header(name)
-            self.assertIn(f"comment TextureFile {name[:-4]}0.png\n", header)
-            faces += int(re.search("element face ([0-9]+)\n", header)[1])
-        self.assertEqual(faces, 288)
+            self.assertIn(f"comment TextureFile {name[:-4]}0.png\n", self.header(name))
+        self.assertEqual(sum(map(self.faces, self.tile_files(3, ".ply"))), 288)
         self.assertIn("in 3 textures; 0 of 288 faces", said)
 
     def test_one_tile_is_the_default(self):
@@ -155,16 +110,9 @@ class Tiles(TextureTest):
         self.succeeds(*self.texture("--tiles", "1"))
         self.assertEqual(contents(self.work), default)
 
-    def test_any_number_of_threads_gives_the_same_bytes(self):
-        found = []
-        for threads in (1, 2):
-            self.succeeds(*self.texture("--max-threads", threads, "--tiles", "3"))
-            found.append(contents(self.work))
-        self.assertEqual(found[0], found[1])
-
     def test_a_tile_without_faces_leaves_no_file_of_another_run(self):
         vertices, faces = wall(cells=1)
-        write(self.mesh, mesh_ply(vertices, faces[:1]))
+        self.put(vertices, faces[:1])
         for name in self.tile_files(8, ".ply"):
             write(self.path("work", name), "old")
         said = self.succeeds(*self.texture("--tiles", "8")).stdout
@@ -176,11 +124,9 @@ class Tiles(TextureTest):
             self.assertIn("comment TextureFile", self.header(name))
 
     def test_wrong_values(self):
-        for value in ("0", "1001"):
-            self.refuses_and_keeps(f"--tiles {value}: must be from 1 to 1000",
-                                   *self.texture("--tiles", value))
-        for value in ("-1", "x", "2.5"):
-            self.refuses_and_keeps("--tiles", *self.texture("--tiles", value))
+        self.refuses_each(self.texture(), *((f"--tiles {value}: must be from 1 to 1000", "--tiles", value)
+                                            for value in ("0", "1001")),
+                          *(("--tiles", "--tiles", value) for value in ("-1", "x", "2.5")))
 
     def test_inputs_are_not_overwritten(self):
         os.rename(self.mesh, self.path("work", "out.tile2-3.ply"))
@@ -213,42 +159,18 @@ class Masks(TextureTest):
             self.succeeds(*self.texture("--ignore-mask-label", label))
 
     def test_only_views_without_the_label_are_used(self):
-        self.succeeds(*self.texture("--views-file", write_views(self, "0001.png"), "-o", "one"))
+        write(self.path("work", "views.txt"), "0001.png\n")
+        self.succeeds(*self.texture("--views-file", "views.txt", "-o", "one"))
         self.mask(0, 255, 0)
         self.succeeds(*self.texture("--ignore-mask-label", "0", "-o", "two"))
-        self.assertEqual(read(self.path("work", "one0.png")), read(self.path("work", "two0.png")))
-
-
-def write_views(test, *names):
-    write(test.path("work", "views.txt"), "\n".join(names) + "\n")
-    return "views.txt"
+        self.assertEqual(self.at("one0.png"), self.at("two0.png"))
 
 
 class WrongInput(TextureTest):
-    def check(self, expected, vertices, faces):
-        write(self.mesh, mesh_ply(vertices, faces))
-        self.refuses_and_keeps(expected, *self.texture())
-
-    def test_wrong_meshes(self):
+    def test_a_mesh_that_no_camera_sees_from_outside(self):
         vertices, faces = wall(cells=2)
-        self.check("scene.ply: the mesh has no faces", vertices, [])
-        self.check("scene.ply: a face refers to vertex 9, but there are 9", vertices,
-                   [*faces, (0, 1, 9)])
-        self.check("scene.ply", [*vertices[:-1], (0, NAN, 1)], faces)
-        self.check("scene.ply: vertex 8 has a coordinate larger than 1e+18",
-                   [*vertices[:-1], (0, 1e20, 1)], faces)
-        self.check("scene.ply: does not belong to", *wall(z=-1))
-        self.check("no view sees a face of the mesh", vertices, [f[::-1] for f in faces])
-
-    def test_files_that_are_no_meshes(self):
-        good = read(self.mesh)
-        for size in (0, 3, 100, len(good) // 2, len(good) - 20):
-            write(self.mesh, good[:size])
-            self.refuses_and_keeps("scene.ply", *self.texture())
-        write(self.mesh, os.urandom(1000))
-        self.refuses_and_keeps("scene.ply", *self.texture())
-        os.remove(self.mesh)
-        self.refuses_and_keeps("scene.ply", *self.texture())
+        self.put(vertices, turned(faces))
+        self.refuses_and_keeps("no view sees a face of the mesh", *self.texture())
 
     def test_missing_and_damaged_images(self):
         good = read(self.images[1])
@@ -258,19 +180,17 @@ class WrongInput(TextureTest):
         self.refuses_and_keeps("0001.png", *self.texture())
 
     def test_options_out_of_range(self):
-        for option, value, expected in (
-                ("--export-type", "stl", "must be one or more of ply, obj, glb, gltf"),
-                ("--decimate", "0", "must be from 1e-06 to 1"),
-                ("--close-holes", "1001", "must be from 0 to 1000"),
-                ("--virtual-face-images", "3", "--virtual-face-images 3: not built yet"),
-                ("--orthographic-image-resolution", "100", "not built yet"),
-                ("--outlier-threshold", "2", "must be from 0 to"),
-                ("--max-texture-size", "4", "must be from 16 to 32768"),
-                ("--empty-color", "16777216", "must be from 0 to 16777215"),
-                ("--ignore-mask-label", "-3", "must be from -2 to 65535"),
-                ("--camera-model", "fisheye", "must be one of auto, pinhole, flatport")):
-            self.refuses_and_keeps(expected, *self.texture(option, value))
-        self.refuses_and_keeps("scene.housing.json", *self.texture("--refractive"))
+        self.refuses_each(
+            self.texture(), ("must be one or more of ply, obj, glb, gltf", "--export-type", "stl"),
+            ("must be from 1e-06 to 1", "--decimate", "0"), ("must be from 0 to 1000", "--close-holes", "1001"),
+            ("--virtual-face-images 3: not built yet", "--virtual-face-images", "3"),
+            ("not built yet", "--orthographic-image-resolution", "100"),
+            ("must be from 0 to", "--outlier-threshold", "2"),
+            ("must be from 16 to 32768", "--max-texture-size", "4"),
+            ("must be from 0 to 16777215", "--empty-color", "16777216"),
+            ("must be from -2 to 65535", "--ignore-mask-label", "-3"),
+            ("must be one of auto, pinhole, flatport", "--camera-model", "fisheye"),
+            ("scene.housing.json", "--refractive"))
 
     def test_openmvs_scripts_run(self):
         self.succeeds(*self.texture("--decimate", "1", "--close-holes", "30", "--virtual-face-images",
@@ -284,10 +204,6 @@ class WrongInput(TextureTest):
         os.link(self.images[0], self.path("work", "out0.png"))
         self.refuses_and_keeps("--output-file", *self.texture("-m", "scene_texture.ply", "-o", "out"))
         self.succeeds(*self.texture("-m", "scene_texture.ply", "-o", "other"))
-
-    def test_help_without_input(self):
-        self.assertEqual(run("TextureMesh").returncode, 1)
-        self.assertEqual(run("TextureMesh", "--help").returncode, 0)
 
 
 if __name__ == "__main__":

@@ -10,11 +10,11 @@ import shutil
 import unittest
 
 from browser import CHROMIUM
-from openmvs_scene import ascii_ply
 from programs import main, read, write
-from texture_mesh_test import mesh_ply, wall
+from readers import rotated
 from tiny_scene import FOCAL, HEIGHT, WIDTH
 from view_scene_test import PAGE, PORT, ViewCase, pixel, points
+from worlds import grid, housing, wall
 
 NOISE = 0.05  # [px]
 TILT = 4  # degrees
@@ -33,10 +33,6 @@ def product(a, b):
             a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
             a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
             a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0])
-
-
-def rotated(q, v):
-    return product(product(q, (0, *v)), (q[0], -q[1], -q[2], -q[3]))[1:]
 
 
 def poses():
@@ -92,11 +88,8 @@ def write_model(folder, shift=0.0, image_names=NAMES, points=None):
 
 def teeth():
     """A mesh at z = 1.1 whose teeth along x rise by 45 degrees: its rugosity is sqrt(2)."""
-    step, count = 0.03, 24
-    vertices = [(step * i - 0.36, y, 1.1 + step * (i % 2)) for i in range(count + 1)
-                for y in (-0.4, 0.4)]
-    faces = [face for i in range(0, 2 * count, 2) for face in ((i, i + 1, i + 2), (i + 1, i + 3, i + 2))]
-    return vertices, faces
+    step = 0.03
+    return grid(24, 1, lambda i, j: (step * i - 0.36, 0.8 * j - 0.4, 1.1 + step * (i % 2)))
 
 
 @unittest.skipUnless(os.path.exists(PAGE), "the page of ViewScene was not built")
@@ -118,9 +111,7 @@ class Residuals(QualityCase):
     def residuals(self, *arguments):
         self.use_model()
         self.succeeds(*self.view("--sfm-model", self.model, *arguments))
-        scene = json.loads(read(self.path("work", "report", "data", "scene.js"))
-                           .decode().removeprefix("axialData.scene(").removesuffix(");\n"))
-        return scene["residuals"]
+        return self.shown()["residuals"]
 
     def test_they_are_the_noise_of_the_observations(self):
         found = self.residuals()
@@ -182,10 +173,8 @@ class QualityPage(QualityCase):
 
     def test_a_wrong_port_is_named(self):
         self.use_model()
-        wrong = json.loads(json.dumps(PORT))
         angle = math.radians(TILT)
-        wrong["ports"]["main"]["normal"] = [math.sin(angle), 0, math.cos(angle)]
-        write(self.port, json.dumps(wrong))
+        write(self.port, housing({**PORT, "normal": [math.sin(angle), 0, math.cos(angle)]}))
         page = self.opened("--sfm-model", self.model, width=390, height=844)
         page.click_on("[data-tab=residuals]")
         self.assertIn("A systematic pattern in camera 1 (flat port main)",
@@ -198,7 +187,7 @@ class QualityPage(QualityCase):
         self.assertEqual(page.errors, [])
 
     def test_points_are_coloured_by_views_height_and_error(self):
-        write(self.path("work", "truth.ply"), mesh_ply(*wall(z=1.0)))
+        self.put("truth.ply", *wall(z=1.0))
         page = self.opened("--truth", "truth.ply")
         page.value("document.querySelectorAll('[aria-pressed=true]')[1].click()")  # no cameras
         colours = lambda: page.value("[...axial.view.cloud.chunks[0].object.geometry"
@@ -230,7 +219,7 @@ class QualityPage(QualityCase):
         self.assertEqual(page.errors, [])
 
     def test_rugosity_of_a_known_mesh(self):
-        write(self.path("work", "teeth.ply"), mesh_ply(*teeth()))
+        self.put("teeth.ply", *teeth())
         page = self.opened("-m", "teeth.ply")
         page.click_on("[data-tab=measure]")
         # A triangle, and a path with a corner that points inwards.
@@ -249,7 +238,7 @@ class QualityPage(QualityCase):
         self.assertEqual(page.errors, [])
 
     def test_a_damaged_file_is_reported_once_and_the_rest_is_shown(self):
-        write(self.path("work", "teeth.ply"), mesh_ply(*teeth()))
+        self.put("teeth.ply", *teeth())
         self.succeeds(*self.view("-m", "teeth.ply"))
         file = self.path("work", "report", "data", "mesh-0000.js")
         whole = read(file)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """ViewScene on the wall of tiny_scene.py: the folder, and its page in Chromium."""
 
-import json
 import math
 import os
 import pathlib
@@ -10,16 +9,14 @@ import shutil
 import unittest
 
 from browser import CHROMIUM, Browser
-from openmvs_scene import ascii_ply
 from programs import BIN, contents, files_below, main, read, write
-from texture_mesh_test import mesh_ply, wall
+from readers import shown_scene
 from tiny_scene import CENTRES, CX, CY, FOCAL, TinyScene, picture
+from worlds import cloud, flat, housing, ply, wall
 
 PAGE = os.path.join(BIN, "..", "share", "axialmvs", "view", "viewer.js")
 DISTANCE, THICKNESS, N_GLASS, N_WATER = 0.02, 0.014, 1.52, 1.333
-PORT = {"version": 1, "default": "main",
-        "ports": {"main": {"type": "flat", "distance_m": DISTANCE, "thickness_m": THICKNESS,
-                           "n_glass": N_GLASS, "n_water": N_WATER}}}
+PORT = flat(distance_m=DISTANCE, thickness_m=THICKNESS, n_glass=N_GLASS, n_water=N_WATER)
 
 
 def points():
@@ -51,12 +48,17 @@ class ViewCase(TinyScene):
         super().setUp()
         self.cloud, self.port = self.path("work", "cloud.ply"), self.path("work", "port.json")
         self.report = self.path("work", "report")
-        write(self.cloud, ascii_ply(points()))
-        write(self.port, json.dumps(PORT))
+        write(self.cloud, cloud(points()))
+        write(self.port, housing(PORT))
 
     def view(self, *arguments):
-        return ("ViewScene", "-i", self.scene, "-w", self.work, "-p", self.cloud, "--housing",
-                self.port, "--report", self.report, *arguments)
+        return self.command("ViewScene", "-p", self.cloud, "--housing", self.port, "--report", self.report, *arguments)
+
+    def shown(self):
+        return shown_scene(self.report)
+
+    def put(self, name, vertices, faces=()):
+        write(self.path("work", name), ply(vertices, faces))
 
     def opened(self, *arguments, **window):
         """The page of a new run of ViewScene, when everything is loaded."""
@@ -85,9 +87,8 @@ class ViewCase(TinyScene):
 @unittest.skipUnless(os.path.exists(PAGE), "the page of ViewScene was not built")
 class ViewFolder(ViewCase):
     def test_it_holds_the_page_the_photographs_and_the_data(self):
-        before = files_below(self.work)
-        self.succeeds(*self.view())
-        self.assertEqual({name.removeprefix("report/") for name in files_below(self.work) - before},
+        made, _ = self.makes(*self.view())
+        self.assertEqual({name.removeprefix("report/") for name in made},
                          {"index.html", "style.css", "viewer.js", "data/scene.js",
                           "data/cloud-0000.js", "data/files.json",
                           *(f"photographs/{i:05}.jpg" for i in range(3))})
@@ -96,20 +97,13 @@ class ViewFolder(ViewCase):
         views = []
         vertices, faces = wall(z=1.1)
         for name, more in (("a.ply", []), ("b.ply", [(500 + i, 0, 0) for i in range(300)])):
-            write(self.path("work", name), mesh_ply(vertices + more, faces))
-            self.succeeds("ViewScene", "-i", self.scene, "-w", self.work, "-m", name, "--report", name + "-page")
-            text = read(self.path("work", name + "-page", "data", "scene.js")).decode()
-            views.append(json.loads(text[text.index("{"):text.rindex("}") + 1])["view"])
+            self.put(name, vertices + more, faces)
+            self.succeeds(*self.command("ViewScene", "-m", name, "--report", name + "-page"))
+            views.append(shown_scene(self.path("work", name + "-page"))["view"])
         self.assertEqual(views[0], views[1])
 
-    def test_it_is_the_same_for_any_number_of_threads(self):
-        self.succeeds(*self.view("--max-threads", 1))
-        one = contents(self.report)
-        self.succeeds(*self.view("--max-threads", 4))
-        self.assertEqual(contents(self.report), one)
-
     def test_a_second_run_replaces_the_first_and_keeps_foreign_files(self):
-        write(self.path("work", "mesh.ply"), mesh_ply(*wall()))
+        self.put("mesh.ply", *wall())
         self.succeeds(*self.view("-m", "mesh.ply"))
         self.assertTrue(os.path.exists(self.path("work", "report", "data", "mesh-0000.js")))
         write(self.path("work", "report", "notes.txt"), "Mine.")
@@ -129,8 +123,7 @@ class ViewFolder(ViewCase):
 
     def test_a_large_cloud_is_thinned_out(self):
         self.succeeds(*self.view("--max-points", 10))
-        scene = json.loads(read(self.path("work", "report", "data", "scene.js"))
-                           .decode().removeprefix("axialData.scene(").removesuffix(");\n"))
+        scene = self.shown()
         self.assertEqual(scene["all_points"], 35)
         self.assertLess(scene["points"], 25)
         self.assertEqual(sum(chunk["points"] for chunk in scene["chunks"]), scene["points"])
@@ -138,9 +131,9 @@ class ViewFolder(ViewCase):
     def test_wrong_input_is_refused(self):
         write(self.path("work", "mine", "photo.jpg"), "Mine.")
         write(self.path("work", "theirs", "data", "files.json"), '{"index.html": "1"}')
-        write(self.path("work", "empty.ply"), ascii_ply([]))
-        write(self.path("work", "foreign.ply"), ascii_ply([((0, 0, 1), [7])]))
-        write(self.path("work", "flat.ply"), mesh_ply(wall()[0], []))
+        write(self.path("work", "empty.ply"), cloud([]))
+        write(self.path("work", "foreign.ply"), cloud([((0, 0, 1), [7])]))
+        self.put("flat.ply", wall()[0])
         for expected, *arguments in (
                 ("--report " + self.path("work", "mine") + ": contains other files", "--report",
                  "mine"),
@@ -255,21 +248,21 @@ class ViewPage(ViewCase):
         self.assertAlmostEqual(float(values[7]), math.hypot(*normal) / 2, delta=1e-5)
 
     def mesh(self):
-        path = self.path("work", "mesh.ply")
-        write(path, mesh_ply(*wall(z=1.1)))
-        self.succeeds("TextureMesh", "-i", self.scene, "-w", self.work, "-m", path, "--housing",
-                      self.port, "-o", "textured.mvs")
+        self.put("mesh.ply", *wall(z=1.1))
+        self.succeeds(*self.command("TextureMesh", "-m", "mesh.ply", "--housing", self.port, "-o", "textured.mvs"))
         return self.path("work", "textured.ply")
 
     def check_mesh(self, page):
         """A click on the mesh alone picks a point of the mesh."""
         page.click_on("#show-points")
         page.click_on("#show-mesh")
+        self.check_picked(page)
+
+    def check_picked(self, page):
         self.assertGreater(page.value("axial.view.drawnShare()"), 0.1)
         page.click_on("[data-tab=point]")
         page.click(*self.place_of(page, (0.05, 0.03, 1.1)))
-        for value, expected in zip(page.value("axial.state.picked"), (0.05, 0.03, 1.1)):
-            self.assertAlmostEqual(value, expected, delta=0.003)  # a pixel is about 2 mm wide
+        self.near(page.value("axial.state.picked"), (0.05, 0.03, 1.1), 0.003)  # a pixel is about 2 mm wide
 
     def check_volume(self, page):
         """The mesh is the plane z = 1.1. The path is a triangle in the plane z = 1."""
@@ -290,20 +283,15 @@ class ViewPage(ViewCase):
         self.assertIn("0.00288", page.value("axial.paths.csv()"))
 
     def test_without_a_cloud_the_mesh_is_shown_alone(self):
-        mesh = self.path("work", "mesh.ply")
-        write(mesh, mesh_ply(*wall(z=1.1)))
-        alone = ("ViewScene", "-i", self.scene, "-w", self.work, "--report", self.report)
+        self.put("mesh.ply", *wall(z=1.1))
+        alone = self.command("ViewScene", "--report", self.report)
         self.refuses("scene.ply", *alone)  # nothing to show
-        self.refuses("--truth", *alone, "-m", mesh, "--truth", mesh)
-        self.succeeds(*alone, "-m", mesh)
+        self.refuses("--truth", *alone, "-m", "mesh.ply", "--truth", "mesh.ply")
+        self.succeeds(*alone, "-m", "mesh.ply")
         page = self.reopened("globalThis.axial && axial.ready")
         self.addCleanup(page.close)
         self.assertEqual(page.value("document.getElementById('status').textContent"), "288 faces")
-        self.assertGreater(page.value("axial.view.drawnShare()"), 0.1)
-        page.click_on("[data-tab=point]")
-        page.click(*self.place_of(page, (0.05, 0.03, 1.1)))
-        for value, expected in zip(page.value("axial.state.picked"), (0.05, 0.03, 1.1)):
-            self.assertAlmostEqual(value, expected, delta=0.003)
+        self.check_picked(page)
         self.assertEqual(page.errors, [])
 
     def test_a_narrow_page_works_with_touch_and_keyboard(self):

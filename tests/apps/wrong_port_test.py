@@ -7,9 +7,10 @@ import math
 import os
 import random
 import re
-import tempfile
 
-from programs import ProgramTest, cloud_size, files_below, grey_png, main, read, run, write
+from programs import cloud_size, files_below, grey_png, main, must, read, run, write
+from readers import records
+from worlds import ROUGH, Simulated
 
 NO_SCENE = "The photographs do not seem to show the scene"
 WARNING = "Cameras and photographs do not seem to belong together"
@@ -17,16 +18,10 @@ WARNING = "Cameras and photographs do not seem to belong together"
 QUICK = ("--geometric-iters", "0", "--postprocess-dmaps", "0", "--fusion-mode", "1")
 
 
-def simulate(folder, preset, *arguments):
-    made = run("SimulateUnderwater", "--preset", preset, "--coarseness", 4, "--views", 5,
-               "--width", 320, "--height", 240, "--samples", 1, *arguments, "-o", folder)
-    assert made.returncode == 0, made.stderr
-
-
-def scaled_model(text, first, scale, every):
+def scaled_model(path, first, scale, every):
     """A COLMAP text file in which each record of `every` lines has the three numbers from column
     `first` multiplied by `scale`."""
-    lines = [line for line in text.decode().splitlines() if not line.startswith("#")]
+    lines = records(path)
     for i in range(0, len(lines), every):
         words = lines[i].split()
         words[first:first + 3] = [repr(scale * float(word)) for word in words[first:first + 3]]
@@ -34,18 +29,7 @@ def scaled_model(text, first, scale, every):
     return "\n".join(lines) + "\n"
 
 
-class PortTest(ProgramTest):
-    SCENE = None  # preset and arguments of SimulateUnderwater; None: base class
-
-    @classmethod
-    def setUpClass(cls):
-        if cls.SCENE is None:
-            return
-        shared = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.addClassCleanup(shared.cleanup)
-        cls.truth = os.path.join(shared.name, "scene")
-        simulate(cls.truth, *cls.SCENE)
-
+class PortTest(Simulated):
     def housing(self, **changes):
         housing = json.loads(read(os.path.join(self.truth, "housing.json")))
         housing["ports"]["main"].update(changes)
@@ -54,28 +38,25 @@ class PortTest(ProgramTest):
     def scene(self, name, housing=None, medium="water", scale=1, focal=1, camera=None):
         """A folder with scene.mvs. The photographs are right; arguments make other inputs wrong."""
         sparse = os.path.join(self.truth, "sparse")
-        files = {part: read(os.path.join(sparse, part + ".txt"))
-                 for part in ("cameras", "images", "points3D")}
-        words = files["cameras"].decode().splitlines()[-1].split()
+        words = records(os.path.join(sparse, "cameras.txt"))[-1].split()
         words[4:6] = [repr(focal * float(word)) for word in words[4:6]]
         if camera:
             words = camera(words)
         write(self.path(name, "sparse", "cameras.txt"), " ".join(words) + "\n")
-        write(self.path(name, "sparse", "images.txt"), scaled_model(files["images"], 5, scale, 2))
-        write(self.path(name, "sparse", "points3D.txt"),
-              scaled_model(files["points3D"], 1, scale, 1))
-        arguments = []
+        for part, first, every in (("images.txt", 5, 2), ("points3D.txt", 1, 1)):
+            write(self.path(name, "sparse", part), scaled_model(os.path.join(sparse, part), first, scale, every))
+        port = ()
         if housing:
             write(self.path(name, "port.json"), json.dumps(housing))
-            arguments = ["--housing", self.path(name, "port.json")]
-        self.succeeds("InterfaceCOLMAP", "-i", self.path(name), "--image-folder",
-                      os.path.join(self.truth, medium), "-o", self.path(name, "scene.mvs"),
-                      *arguments)
+            port = ("--housing", self.path(name, "port.json"))
+        self.imported(self.path(name, "scene.mvs"), medium, model=self.path(name), port=port)
         return self.path(name)
 
+    def command(self, folder, *arguments):
+        return ("DensifyPointCloud", "-i", "scene.mvs", "-w", folder, *QUICK, *arguments)
+
     def densify(self, folder, *arguments):
-        return self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", folder, *QUICK,
-                             "--report-file", "report.json", *arguments).stdout
+        return self.succeeds(*self.command(folder, "--report-file", "report.json", *arguments)).stdout
 
     def report(self, folder):
         return json.loads(read(os.path.join(folder, "report.json")))["agreement"]
@@ -102,7 +83,7 @@ class PortTest(ProgramTest):
 
 
 class FlatPort(PortTest):
-    SCENE = ("closeup",)
+    SCENE = ("--preset", "closeup", *ROUGH)
 
     def test_what_is_right(self):
         self.passes("water", housing=self.housing())
@@ -131,7 +112,7 @@ class FlatPort(PortTest):
         # At these scales the scene lies inside the housing and is not visible.
         for scale in (0.01, 0.001):
             folder = self.scene(f"times_{scale}", housing=self.housing(), scale=scale)
-            result = run("DensifyPointCloud", "-i", "scene.mvs", "-w", folder, *QUICK)
+            result = run(*self.command(folder))
             self.assertEqual(result.returncode, 1)
             self.assertRegex(result.stdout, r"scene\.housing\.json: housing\.ports\.main\."
                              r"(distance_m|thickness_m) is .*"
@@ -143,22 +124,18 @@ class FlatPort(PortTest):
         def line(said):
             return re.search(WARNING + ".*", said)[0]
         folder = self.scene("wrong", housing=self.housing(n_water=1.38, distance_m=0.1))
-        whole = ("--geometric-iters", "1")
-        base = ("-i", "scene.mvs", "-w", folder)
-        first = line(self.succeeds("DensifyPointCloud", *base, *QUICK).stdout)
+        first = line(self.succeeds(*self.command(folder)).stdout)
         for again in (("--max-threads", "1"), ("--max-memory", "200")):
             for name in files_below(folder):
                 if name.endswith((".dmap", ".dmap.json")):
                     os.remove(os.path.join(folder, name))
-            self.assertEqual(
-                line(self.succeeds("DensifyPointCloud", *base, *QUICK, *again).stdout), first)
+            self.assertEqual(line(self.succeeds(*self.command(folder, *again)).stdout), first)
         # With all maps there already.
-        self.assertEqual(line(self.succeeds("DensifyPointCloud", *base, *QUICK).stdout), first)
-        self.assertEqual(line(self.succeeds("DensifyPointCloud", *base, "--fusion-mode",
-                                            "-1").stdout), first)
-        # With later stages.
-        self.assertEqual(self.succeeds("DensifyPointCloud", *base, *whole).stdout.count(WARNING), 1)
-        self.assertEqual(self.succeeds("DensifyPointCloud", *base, *whole).stdout.count(WARNING), 1)
+        base = self.command(folder)[:5]
+        for command in (self.command(folder), (*base, "--fusion-mode", "-1")):
+            self.assertEqual(line(self.succeeds(*command).stdout), first)
+        for _ in range(2):  # with later stages
+            self.assertEqual(self.succeeds(*base, "--geometric-iters", "1").stdout.count(WARNING), 1)
         self.assertGreater(cloud_size(read(os.path.join(folder, "scene_dense.ply"))), 0)
         self.assertFalse([name for name in files_below(folder) if "report" in name])
 
@@ -168,14 +145,13 @@ class FlatPort(PortTest):
 
     def test_the_report_is_no_input(self):
         folder = self.scene("right", housing=self.housing())
-        self.refuses("--report-file", "DensifyPointCloud", "-i", "scene.mvs", "-w", folder,
-                     "--report-file", "scene.mvs")
+        self.refuses("--report-file", *self.command(folder, "--report-file", "scene.mvs"))
 
 
 class Noise(PortTest):
     """With few pixels per sparse point, maps of photographs without content stay at the sparse
     points and agree with each other."""
-    SCENE = ("closeup",)
+    SCENE = ("--preset", "closeup", *ROUGH)
     SMALL = ("--resolution-level", "1", "--min-resolution", "100")
 
     def test_photographs_of_noise(self):
@@ -204,7 +180,7 @@ class Noise(PortTest):
 
     def test_hazy_and_noisy_photographs_are_right(self):
         truth = self.path("hazy")
-        simulate(truth, *self.SCENE, "--haze", 0.5, "--noise", 8)
+        must("SimulateUnderwater", *self.SCENE, "--haze", 0.5, "--noise", 8, "-o", truth)
         self.truth, given = truth, self.truth
         try:
             self.passes("water", housing=self.housing())
@@ -214,7 +190,7 @@ class Noise(PortTest):
 
 
 class DistortedLens(PortTest):
-    SCENE = ("closeup", "--lens", "OPENCV,-0.25,0.08,0.001,0.001")
+    SCENE = ("--preset", "closeup", *ROUGH, "--lens", "OPENCV,-0.25,0.08,0.001,0.001")
 
     def test_distortion(self):
         def straight(words):
@@ -224,7 +200,7 @@ class DistortedLens(PortTest):
 
 
 class OtherPorts(PortTest):
-    SCENE = ("closeup", "--dome-radius", 0.05, "--dome-z", 0.012)
+    SCENE = ("--preset", "closeup", *ROUGH, "--dome-radius", 0.05, "--dome-z", 0.012)
 
     def test_a_dome(self):
         self.passes("right", housing=self.housing())
@@ -233,7 +209,7 @@ class OtherPorts(PortTest):
 
 class FarScene(PortTest):
     """A scene 2 to 3 m away, behind a port without tilt."""
-    SCENE = ("reef",)
+    SCENE = ("--preset", "reef", *ROUGH)
 
     def test_right_and_wrong(self):
         self.passes("right", housing=self.housing())

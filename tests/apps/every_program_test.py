@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Properties that all programs have: --help, one line for wrong options, no folder of a refused run, the same
+bytes for any number of threads and without standard streams, and one run for each output."""
+
+import fcntl
+import math
+import os
+import shutil
+import subprocess
+
+from programs import BIN, contents, files_below, grey_png, main, read, run, write
+from tiny_scene import DENSIFY
+from worlds import Wall, cloud, matrix_text, ply, wall
+
+# The wall is small and simple.
+MORE = {"RefineMesh": ("--max-face-area", "0"), "ReconstructMesh": ("--remove-spurious", "0")}
+
+
+class Programs(Wall):
+    """The scene work/scene.mvs with a cloud beside it, and the mesh work/mesh.ply."""
+    MESH = "mesh.ply"
+
+    def setUp(self):
+        super().setUp()
+        self.cloud = self.path("work", "scene.ply")
+        write(self.cloud, cloud([((0.01 * i, 0.02 * i, 1), [0, 1]) for i in range(9)]))
+        write(self.path("work", "t.txt"), matrix_text())
+
+    def program(self, program, *arguments, mesh="mesh.ply"):
+        return (program, "-i", "scene.mvs", "-w", self.work, *(("--mesh-file", mesh) if mesh else ()),
+                *MORE.get(program, ()), *arguments)
+
+    def commands(self):
+        """A command of each program, with its outputs named `out`."""
+        model = ("-i", self.path("colmap", "sparse"))
+        here = ("-w", self.work)
+        compare = ("CompareSurveys", "-i", "mesh.ply", "--other", "mesh.ply", *here, "-o", "out")
+        return [("InterfaceCOLMAP", "-i", self.path("colmap"), *here, "-o", "out"),
+                ("InterfaceCOLMAP", "-i", "scene.mvs", *here, "-o", "out"),
+                ("AlignModel", *model, "--reference", *model[1:], "-o", self.path("work", "out")),
+                (*DENSIFY[:1], *DENSIFY[3:], "-i", "scene.mvs", *here, "-o", "out"),
+                self.program("ReconstructMesh", "-o", "out"),
+                self.program("RefineMesh", "-o", "out"),
+                self.program("TextureMesh", "-o", "out", "--export-type", "ply,glb"),
+                self.program("TextureMesh", "-o", "out", "--tiles", "3"),
+                self.program("MapSurface", "-o", "out", "--gsd", "0.02", "--hillshade", "--contours", "0.1"),
+                (*compare, "--gsd", "0.02"),
+                self.program("TransformScene", "-t", "t.txt", "-o", "out"),
+                self.program("ViewScene", "--report", "out"),
+                ("EvaluateReconstruction", "-i", self.mesh, "-m", self.mesh, "--samples", "100", "--json",
+                 self.path("work", "out.json"))]
+
+
+class SameBytes(Programs):
+    def without(self, closed, *command):
+        """Runs a program without these standard streams. Returns the files that it makes, and removes them."""
+        before = files_below(self.work)
+        streams = " ".join(f"{descriptor}>&-" for descriptor in closed)
+        ended = subprocess.run(["bash", "-c", f'exec "$@" {streams}', "bash", os.path.join(BIN, command[0]),
+                                *map(str, command[1:])], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60)
+        self.assertEqual(ended.returncode, 0, (command, closed, ended.stderr))
+        found = {name: data for name, data in contents(self.work).items() if name not in before}
+        for name in found:
+            os.remove(self.path("work", name))
+        shutil.rmtree(self.path("work", "out"), ignore_errors=True)
+        return found
+
+    def test_for_any_number_of_threads_and_without_streams(self):
+        for command in self.commands():
+            with self.subTest(command=command):
+                expected = self.without((), *command, "--max-threads", 2)
+                self.assertTrue(expected)
+                for closed, threads in (((1,), 1), ((0, 1, 2), 2)):
+                    self.assertEqual(self.without(closed, *command, "--max-threads", threads), expected)
+
+
+class CommandLine(Programs):
+    def test_help_and_wrong_options(self):
+        for program, command in {command[0]: command for command in self.commands()}.items():
+            with self.subTest(program=program):
+                self.assertEqual(run(program).returncode, 1)
+                self.assertEqual(run(program, "--help").returncode, 0)
+                self.refuses_and_keeps("'--no-such-option'", *command, "--no-such-option", "1")
+
+    def test_a_refused_command_leaves_no_folder(self):
+        new = self.path("new", "deep", "out")
+        instead = {"-i": self.path("missing.mvs"), "-o": new, "--report": new}
+        for command in self.commands():
+            with self.subTest(command=command):
+                changed = [instead.get(before, word) for before, word in zip(command, command[1:])]
+                self.refuses_and_keeps("missing.mvs", command[0], *changed)
+                self.assertFalse(os.path.exists(self.path("new")))
+
+
+class WrongMeshes(Programs):
+    """Programs that take a mesh name the file and its fault."""
+    PROGRAMS = ("TextureMesh", "MapSurface", "RefineMesh", "CompareSurveys")
+
+    def setUp(self):
+        super().setUp()
+        self.good = read(self.mesh)
+        write(self.path("work", "right.ply"), self.good)
+
+    def refused(self, expected, content, programs=PROGRAMS):
+        write(self.mesh, content)
+        for program in programs:
+            command = (program, "-i", "right.ply", "--other", "mesh.ply", "-w", self.work) \
+                if program == "CompareSurveys" else self.program(program)
+            with self.subTest(expected=expected, program=program):
+                self.refuses_and_keeps("mesh.ply" + expected, *command)
+
+    def test_files_that_are_no_meshes(self):
+        sizes = (0, 3, 100, len(self.good) // 2, len(self.good) - 20)
+        for content in (*(self.good[:size] for size in sizes), os.urandom(1000)):
+            self.refused("", content)
+
+    def test_files_that_are_missing(self):
+        os.rename(self.mesh, self.path("work", "other.ply"))
+        for program in self.PROGRAMS[:3]:
+            self.refuses_and_keeps("mesh.ply", *self.program(program))
+
+    def test_faces_and_coordinates(self):
+        vertices, faces = wall(cells=2)
+        for expected, *mesh in (
+                (": the mesh has no faces", vertices, []),
+                (": a face refers to vertex 9, but there are 9", vertices, [*faces, (0, 1, 9)]),
+                ("", [*vertices[:-1], (0, math.nan, 1)], faces)):
+            self.refused(expected, ply(*mesh))
+        self.refused(": vertex 8 has a coordinate larger than 1e+18", ply([*vertices[:-1], (0, 1e20, 1)], faces),
+                     self.PROGRAMS[:1])
+        self.refused(": does not belong to", ply(*wall(z=-1)), self.PROGRAMS[:3])
+
+
+class Rivals(Programs):
+    """A second run on the output of a running one is told who writes it."""
+
+    def held(self, name, how):
+        lock = open(self.path("work", name + ".lock"), "w")
+        self.addCleanup(lock.close)
+        fcntl.flock(lock, how)
+        lock.write(f"{os.getpid()} {os.uname().nodename} 2026-11-27 22:30:00\n")
+        lock.flush()
+        return lock
+
+    def test_a_second_run_is_refused(self):
+        who = (f"another run writes it: process {os.getpid()} on {os.uname().nodename}, since "
+               "2026-11-27 22:30:00")
+        masks = ("InterfaceCOLMAP", "-i", self.path("colmap", "images"), "-w", self.work,
+                 "--mask-path", self.path("mask.png"), "-o", "masks/")
+        write(self.path("mask.png"), grey_png([bytes(96)] * 72))
+        for output, command in (
+                ("scene_texture.mvs", self.program("TextureMesh")), ("scene_refine.ply", self.program("RefineMesh")),
+                ("scene_mesh.ply", self.program("ReconstructMesh")),
+                ("map.dem.tif", self.program("MapSurface", "-o", "map", "--gsd", "0.02")),
+                ("surveys.change.difference.tif",
+                 ("CompareSurveys", "-i", "mesh.ply", "--other", "mesh.ply", "-w", self.work, "-o", "surveys")),
+                ("page", self.program("ViewScene", "--report", "page/")),
+                ("moved.mvs", self.program("TransformScene", "-t", "t.txt", "-o", "moved")),
+                ("some.mvs", self.program("TransformScene", "--sample-mesh", "-5", "-o", "some")),
+                ("made.mvs", ("InterfaceCOLMAP", "-i", self.path("colmap"), "-w", self.work, "-o", "made")),
+                ("sparse", ("InterfaceCOLMAP", "-i", "scene.mvs", "-w", self.work)), ("masks", masks)):
+            lock = self.held(output, fcntl.LOCK_EX)
+            self.refuses_and_keeps(f"{output}: {who}", *command)
+            lock.close()
+            self.succeeds(*command)  # the file alone is no lock
+            self.assertNotIn(output + ".lock", files_below(self.work))
+        lock = self.held("scene_dense.mvs", fcntl.LOCK_EX)
+        self.refuses_and_keeps(who, *self.densify())
+        lock.close()
+        lock = self.held("depth_maps", fcntl.LOCK_EX)
+        self.refuses_and_keeps(who, *self.densify("-o", "other"))
+
+    def test_runs_for_parts_are_no_rivals(self):
+        locks = [self.held(name, fcntl.LOCK_SH) for name in ("scene_dense.mvs", "depth_maps")]
+        for part in ("1/2", "2/2"):
+            self.succeeds(*self.densify("--until", "maps", "--part", part))
+        self.refuses_and_keeps("another run writes it", *self.densify())
+        locks[0].close()
+        self.succeeds(*self.densify())  # all maps exist: they are only read
+        self.assertIn("depth_maps.lock", files_below(self.work))
+
+
+if __name__ == "__main__":
+    main()
