@@ -7,11 +7,13 @@ import itertools
 import json
 import math
 import os
+import pathlib
 import re
 import struct
 import zlib
 
 from programs import read
+from support import colmap_text
 
 
 class Ply:
@@ -263,13 +265,8 @@ def image_lines(path):
 
 
 def centres_of(model):
-    """Camera centres C = -R^T T by image name."""
-    result = {}
-    for pose, _ in image_lines(os.path.join(model, "images.txt")):
-        words = pose.split(" ")
-        w, x, y, z, *t = [float(v) for v in words[1:8]]
-        result[words[9]] = tuple(-v for v in rotated((w, -x, -y, -z), t))
-    return result
+    """Camera centres by image name."""
+    return colmap_text.centres(pathlib.Path(model))
 
 
 def points_of(model):

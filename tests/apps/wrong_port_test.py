@@ -49,7 +49,8 @@ class PortTest(Simulated):
         if housing:
             write(self.path(name, "port.json"), json.dumps(housing))
             port = ("--housing", self.path(name, "port.json"))
-        self.imported(self.path(name, "scene.mvs"), medium, model=self.path(name), port=port)
+        self.imported(self.path(name, "scene.mvs"), os.path.join(self.truth, medium), model=self.path(name),
+                      port=port)
         return self.path(name)
 
     def command(self, folder, *arguments):
