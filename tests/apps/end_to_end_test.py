@@ -10,7 +10,7 @@ import subprocess
 import time
 
 from close_up import FINE, GSD, QUICK, CloseUp
-from programs import BIN, cloud_size, depth_rows, files_below, grey_png, main, read, write
+from programs import BIN, cloud_size, files_below, main, read, write
 
 
 # All three filters of depth maps: the adjusting filter, which is off by default, is one more stage.
@@ -124,31 +124,6 @@ class EndToEnd(CloseUp):
                 least = int(re.search(r"needs (\d+)", said.stderr)[1]) + 5
                 self.densify("capped", "--refractive", "--max-memory", least, *stages)
                 self.assertEqual(self.outputs("free"), self.outputs("capped"))
-
-    def test_masked_pixels_get_no_depth(self):
-        self.import_scene("air", "masked")
-        left_half = grey_png([bytes([5] * 256 + [7] * 256)] * 384)
-        for image in range(4):
-            write(self.path("masked", "masks", f"{image:04}.mask.png"), left_half)
-        masks = ("--mask-path", "masks")
-
-        self.densify("masked", *masks, "--ignore-mask-label", "-1", *QUICK)
-        unmasked = depth_rows(read(self.path("masked", "depth0000.dmap")))
-        self.assertTrue(any(depth > 0 for row in unmasked for depth in row[:len(row) // 2]))
-
-        resumed = self.densify("masked", *masks, "--ignore-mask-label", "5", *QUICK)
-        self.assertNotRegex(resumed, "exist(ed)? already", "maps without masks were taken over")
-        for image in range(4):
-            rows = depth_rows(read(self.path("masked", f"depth{image:04}.dmap")))
-            middle = len(rows[0]) // 2
-            self.assertFalse(any(depth > 0 for row in rows for depth in row[:middle]))
-            self.assertTrue(any(depth > 0 for row in rows for depth in row[middle:]))
-
-        write(self.path("masked", "masks", "0002.mask.png"),
-              grey_png([bytes([7] * 256 + [5] * 256)] * 384))
-        self.densify("masked", *masks, "--ignore-mask-label", "5", *QUICK)
-        row = depth_rows(read(self.path("masked", "depth0002.dmap")))[100]
-        self.assertFalse(any(depth > 0 for depth in row[len(row) // 2:]))
 
     def test_crops_to_the_region_of_interest(self):
         self.import_scene("air", "region")

@@ -135,23 +135,11 @@ class Mesh(Densified):
         self.assertIn("Tile 1 of 3", said)
         self.assertNotIn("Tile 3 of 3", said)
 
-    def refuses_options(self, folder, *cases):
-        self.folder = folder
-        self.refuses_each(("ReconstructMesh", "-i", "scene_dense.mvs", "-w", folder), *cases)
-
-    def refuses_clouds(self, folder, *cases):
-        """`cases`: the expected text and the content of the cloud. Puts the cloud back."""
-        file = os.path.join(folder, "scene_dense.ply")
-        good = read(file)
-        for expected, content in cases:
-            write(file, content)
-            self.refuses_options(folder, (expected,))
-        write(file, good)
+    COMMAND = ("ReconstructMesh", "-i", "scene_dense.mvs", "-w")
 
     def test_wrong_options_are_refused(self):
-        folder = self.copy("air")
-        self.refuses_options(
-            folder, ("--tiles 0", "--tiles", "0"), ("--tile 4/3", "--tile", "4/3"),
+        self.refuses_each(
+            (*self.COMMAND, self.copy("air")), ("--tiles 0", "--tiles", "0"), ("--tile 4/3", "--tile", "4/3"),
             ("--tile 1/1: there must be at least 2 tiles", "--tile", "1/1"),
             ("--tile 1/3: contradicts --tiles 4", "--tile", "1/3", "--tiles", "4"),
             ("--tiles 2: contradicts --decimate", "--tiles", "2", "--decimate", "0.5"),
@@ -167,12 +155,13 @@ class Mesh(Densified):
         header, _ = good.split(b"end_header\n", 1)
         wrong = (b"", good[:len(header) + 11], good[:-1], b"ply\n")
         corners = [((0, 0, 1), [0]), ((1, 0, 1), [0]), ((0, 1, 1), [0])]
-        self.refuses_clouds(folder, *(("scene_dense.ply", content) for content in wrong),
-                            ("have no views", good.replace(b"view_indices", b"view_indicez")),
-                            ("point 3 names view 9", cloud([*corners, ((0, 0, 2), [9])])),
-                            ("scene_dense.ply", cloud([*corners, ((1, 1, 1), [0])])))
-        write(os.path.join(folder, "scene_dense.ply"), good[:-1])
-        self.refuses_options(folder, ("scene_dense.ply", "--tiles", "2"))
+        self.refuses_contents(os.path.join(folder, "scene_dense.ply"), (*self.COMMAND, folder),
+                              *(("scene_dense.ply", content) for content in wrong),
+                              ("have no views", good.replace(b"view_indices", b"view_indicez")),
+                              ("point 3 names view 9", cloud([*corners, ((0, 0, 2), [9])])),
+                              ("scene_dense.ply", cloud([*corners, ((1, 1, 1), [0])])))
+        self.refuses_contents(os.path.join(folder, "scene_dense.ply"), (*self.COMMAND, folder, "--tiles", "2"),
+                              ("scene_dense.ply", good[:-1]))
 
 
 if __name__ == "__main__":

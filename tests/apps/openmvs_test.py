@@ -14,12 +14,6 @@ from worlds import Densified, cloud, dmap_names, ply
 
 
 class Options(Densified):
-    def refuses_each_content(self, folder, file, option, *cases):
-        """`cases`: the content of the file that the option names, and the expected text."""
-        for content, expected in cases:
-            write(os.path.join(folder, file), content)
-            self.refuses(expected, *self.command(folder, option, file))
-
     def same_cloud(self, folder, *arguments):
         """Runs DensifyPointCloud with these options, which must not change the cloud. Returns its output."""
         said = self.said(folder, *arguments)
@@ -84,17 +78,17 @@ class Options(Densified):
         self.assertNotRegex(said, "exist(ed)? already")
         self.assertLess(cloud_size(self.cloud(folder)), 0.9 * whole)
 
-        self.refuses_each_content(folder, "Densify.ini", config[0], ("\nMax Views\n", "line 2"),
-                                  ("\nMax Views = many\n", "many"), ("\nMax Views = -1\n", "Max Views"))
+        self.refuses_contents(file, self.command(folder, *config), ("line 2", "\nMax Views\n"),
+                              ("many", "\nMax Views = many\n"), ("Max Views", "\nMax Views = -1\n"))
 
     def test_a_cloud_in_place_of_the_sparse_points(self):
         folder = self.copy("air")
         self.sparse(folder)
         said = self.same_cloud(folder, "-p", "sparse.ply")
         self.assertIn("All 5 depth maps exist already", said)
-        self.refuses_each_content(folder, "other.ply", "-p", (ply([(0, 0, 1)]), "view_indices"),
-                                  (cloud([((0, 0, 1), [0, 5])]), "image 5"),
-                                  (cloud([((0, 0, "nan"), [0, 1])]), "other.ply"))
+        self.refuses_contents(os.path.join(folder, "other.ply"), self.command(folder, "-p", "other.ply"),
+                              ("view_indices", ply([(0, 0, 1)])), ("image 5", cloud([((0, 0, 1), [0, 5])])),
+                              ("other.ply", cloud([((0, 0, "nan"), [0, 1])])))
 
     def test_view_neighbours(self):
         folder = self.copy("air", "_dense.ply")
@@ -118,9 +112,10 @@ class Options(Densified):
             else:
                 self.assertEqual(len(ids), self.VIEWS)
 
-        self.refuses_each_content(folder, "views.txt", "--view-neighbors-file", ("0 9\n", "line 1: '9'"),
-                                  ("0 x\n", "'x'"), ("0\n", "image 0"), ("0 0\n", "its own"),
-                                  ("0 1\n0 2\n", "line 2"))
+        self.refuses_contents(
+            os.path.join(folder, "views.txt"), self.command(folder, "--view-neighbors-file", "views.txt"),
+            ("line 1: '9'", "0 9\n"), ("'x'", "0 x\n"), ("image 0", "0\n"), ("its own", "0 0\n"),
+            ("line 2", "0 1\n0 2\n"))
 
     def test_points_with_many_views(self):
         folder = self.copy("air")

@@ -150,6 +150,17 @@ class ProgramTest(unittest.TestCase):
             with self.subTest(arguments=arguments):
                 self.refuses_and_keeps(expected, *command, *arguments)
 
+    def refuses_contents(self, path, command, *cases):
+        """`cases`: the expected text, and the content of the file `path`, which is put back at the end."""
+        before = read(path) if os.path.exists(path) else None
+        for expected, content in cases:
+            with self.subTest(expected=expected):
+                write(path, content)
+                self.refuses_and_keeps(expected, *command)
+        os.remove(path)
+        if before is not None:
+            write(path, before)
+
     def new_files(self, folder, *command):
         """The names and contents of the files that a command adds to a folder, and its output."""
         before = files_below(folder)

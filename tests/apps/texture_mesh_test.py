@@ -29,10 +29,6 @@ class Files(TextureTest):
         self.assertIn("element face 288\n", header)
         self.assertNotIn("texnumber", header)
 
-    def test_other_dots_in_the_name_stay(self):
-        self.succeeds(*self.texture("-o", "a.v2"))
-        self.assertLess({"a.v2.ply", "a.v20.png"}, files_below(self.work))
-
     def test_a_mesh_that_is_inside_out_is_told(self):
         told = f"warning: {self.mesh}: the mesh is inside out: the cameras see 100 % of its faces from behind"
         self.assertNotIn("inside out", self.succeeds(*self.texture()).stdout)

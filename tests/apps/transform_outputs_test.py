@@ -153,18 +153,13 @@ class WrongInput(Transform):
                   [a + b for a, b in zip(tiny_scene.CENTRES[0], (5, 6, 7))], 1e-12)
 
     def test_clouds_and_meshes(self):
-        t = ("-t", self.path("t.txt"))
+        move = self.command("TransformScene", "-o", "moved.mvs", "-t", self.path("t.txt"))
         good = read(self.cloud)
-        for data, expected in ((b"garbage", "cloud.ply"), (good[:-9], "cloud.ply"),
-                               (good.replace(b"vertex 60", b"vertex 0"), "has no vertices")):
-            write(self.cloud, data)
-            self.refused(expected, *t, "-p", "cloud.ply")
-        mesh = read(self.mesh)
-        write(self.mesh, mesh.replace(b"3 2 1 3\n", b"3 2 1 60\n"))
-        self.refused("mesh.ply: a face refers to vertex", *t, "-m", "mesh.ply")
-        write(self.mesh, mesh)
-        write(self.cloud, ply([(1.0, math.inf, 2.0)]))
-        self.refused("vertex 0 has a position that is not finite", *t, "-p", "cloud.ply")
+        self.refuses_contents(self.cloud, (*move, "-p", "cloud.ply"), ("cloud.ply", b"garbage"),
+                              ("cloud.ply", good[:-9]), ("has no vertices", good.replace(b"vertex 60", b"vertex 0")),
+                              ("vertex 0 has a position that is not finite", ply([(1.0, math.inf, 2.0)])))
+        self.refuses_contents(self.mesh, (*move, "-m", "mesh.ply"), (
+            "mesh.ply: a face refers to vertex", read(self.mesh).replace(b"3 2 1 3\n", b"3 2 1 60\n")))
 
 
 if __name__ == "__main__":

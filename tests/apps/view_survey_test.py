@@ -163,29 +163,23 @@ class Folder(SurveyCase):
                                *self.view("--depth-maps", "empty"))
 
     def test_wrong_files_are_refused(self):
-        whole = {name: read(self.path("work", name)) for name in ("map.dem.tif", "map.ortho.tif", "survey.change.json")}
-        change = json.loads(whole["survey.change.json"])
-
-        def refused(expected, name, data):
-            write(self.path("work", name), data)
-            self.refuses_and_keeps(expected, *self.survey())
-            if name in whole:
-                write(self.path("work", name), whole[name])
-
-        refused("map.dem.tif: has 4 bands of Byte, but a map of heights has 1 band of Float32",
-                "map.dem.tif", whole["map.ortho.tif"])
-        refused("survey.change.json: ", "survey.change.json", "{")
-        refused("survey.change.json: came.volume is missing", "survey.change.json", json.dumps({**change, "came": {}}))
-        refused('survey.change.json: regions[0].x "a": must be a number', "survey.change.json",
-                json.dumps({**change, "regions": [{**change["regions"][0], "x": "a"}]}))
-        for expected, run in (("the content []: must be an object", []),
-                              ("steps is missing", {"command": []}),
-                              ("steps 7: must be a list", {**RUN, "steps": 7}),
-                              ("steps[0].seconds -1: must be at least 0",
-                               {**RUN, "steps": [{**RUN["steps"][0], "seconds": -1}]}),
-                              ("command[0] 3: must be a text", {**RUN, "command": [3]})):
-            refused("run.json: " + expected, "run.json", json.dumps(run))
-        refused("run.json: malformed JSON: more than 1000 ", "run.json", "[" * 10**6 + "]" * 10**6)
+        change = json.loads(self.at("survey.change.json"))
+        region = {**change["regions"][0], "x": "a"}
+        step = {**RUN["steps"][0], "seconds": -1}
+        for name, *cases in (
+                ("map.dem.tif", (": has 4 bands of Byte, but a map of heights has 1 band of Float32",
+                                 self.at("map.ortho.tif"))),
+                ("survey.change.json", (": ", "{"),
+                 (": came.volume is missing", json.dumps({**change, "came": {}})),
+                 (': regions[0].x "a": must be a number', json.dumps({**change, "regions": [region]}))),
+                ("run.json", (": malformed JSON: more than 1000 ", "[" * 10**6 + "]" * 10**6),
+                 *((": " + expected, json.dumps(run)) for expected, run in (
+                     ("the content []: must be an object", []), ("steps is missing", {"command": []}),
+                     ("steps 7: must be a list", {**RUN, "steps": 7}),
+                     ("steps[0].seconds -1: must be at least 0", {**RUN, "steps": [step]}),
+                     ("command[0] 3: must be a text", {**RUN, "command": [3]}))))):
+            self.refuses_contents(self.path("work", name), self.survey(),
+                                  *((name + expected, content) for expected, content in cases))
         self.refuses_and_keeps("none.dem.tif: ", *self.view("--map", "none"))
         self.refuses_and_keeps("none.change.json: ", *self.view("--change", "none"))
         self.refuses_and_keeps("none.json: ", *self.view("--run", "none.json"))
