@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Features and poses of COLMAP in `reconstruct`: databases written by hand, and stand-ins for COLMAP."""
 
-import argparse
 import json
 import shutil
 import struct
 import unittest.mock
 
 from colmap_databases import BLURRED, SHARP, Databases
+from pipeline_folder import options_of
 from programs import main
 
 from axial_pipeline import colmap, database, features, left_out, lenses, poses, start_lens
@@ -116,9 +116,6 @@ class Lens(Databases):
 class Poses(Databases):
     NAMES = ("a.jpg", "b.jpg", "c.jpg", "d.jpg")
 
-    def given(self, **changes):
-        return argparse.Namespace(**{"scale_from": "", "lens_model": "", "images": "images", **changes})
-
     def best(self, given, free=None):
         """Takes the best model. `free`: makes the models of the second try in a folder."""
         (self.folder / "logs").mkdir(exist_ok=True)
@@ -131,13 +128,13 @@ class Poses(Databases):
 
     def test_all_photographs_need_no_second_try(self):
         self.model(self.folder / "colmap" / "0", self.NAMES)
-        said = self.best(self.given(), lambda folder: self.fail("tried again"))
+        said = self.best(options_of(), lambda folder: self.fail("tried again"))
         self.assertEqual(said, "    4 of 4 photographs have poses\n")
         self.assertEqual(poses.lines_about(self.folder), ["4 of 4 photographs have poses"])
 
     def test_the_try_with_more_photographs_is_kept(self):
         self.model(self.folder / "colmap" / "0", self.NAMES[:2])
-        said = self.best(self.given(), lambda folder: self.model(folder / "0", self.NAMES[:3], 500))
+        said = self.best(options_of(), lambda folder: self.model(folder / "0", self.NAMES[:3], 500))
         self.assertIn("3 of 4 photographs have poses", said)
         self.assertIn("d.jpg: 12 features", said)
         self.assertEqual(set(colmap.images_in(self.folder / "colmap" / "best")), set(self.NAMES[:3]))
@@ -148,14 +145,14 @@ class Poses(Databases):
         shutil.copyfile(self.folder / "features.db", file)
         self.said_by(left_out.leave_out, self.folder / "features.db", file, {"e.jpg": "a.jpg"})
         self.model(self.folder / "colmap" / "0", self.NAMES)
-        said = self.said_by(poses.take_best, file, self.given(), self.folder, [])
+        said = self.said_by(poses.take_best, file, options_of(), self.folder, [])
         self.assertEqual(said.splitlines(), ["    4 of 5 photographs have poses",
                                              "    warning: 1 photographs have no pose",
                                              "    no pose: e.jpg: the same file as a.jpg, and left out"])
 
     def test_photographs_that_got_a_pose_later_count(self):
         self.model(self.folder / "colmap" / "0", self.NAMES[:2])
-        self.best(self.given(lens_model="OPENCV"))
+        self.best(options_of(lens_model="OPENCV"))
         self.assertEqual(poses.lines_about(self.folder)[0], "2 of 4 photographs have poses")
         self.said_by(poses.print_changes, self.folder)
         (self.folder / "refined").mkdir()
@@ -168,19 +165,19 @@ class Poses(Databases):
 
     def test_a_lens_that_ran_away_is_refused(self):
         self.model(self.folder / "colmap" / "0", self.NAMES[:2])
-        said = self.best(self.given(), lambda folder: self.model(folder / "0", self.NAMES, 23))
+        said = self.best(options_of(), lambda folder: self.model(folder / "0", self.NAMES, 23))
         self.assertIn("its focal length ran from 400 to 23 px", said)
         self.assertIn("2 of 4 photographs have poses", said)
 
     def test_of_equal_models_the_fixed_lens_counts(self):
         self.model(self.folder / "colmap" / "0", self.NAMES[:2])
-        self.best(self.given(), lambda folder: self.model(folder / "0", self.NAMES[2:]))
+        self.best(options_of(), lambda folder: self.model(folder / "0", self.NAMES[2:]))
         self.assertEqual(set(colmap.images_in(self.folder / "colmap" / "best")), {"a.jpg", "b.jpg"})
 
     def test_of_equal_places_the_one_with_the_known_length_counts(self):
         for number, names in enumerate((self.NAMES[:2], self.NAMES[2:])):
             self.model(self.folder / "colmap" / str(number), names)
-        said = self.best(self.given(lens_model="OPENCV", scale_from="images:c.jpg,d.jpg,0.5"))
+        said = self.best(options_of(lens_model="OPENCV", scale_from="images:c.jpg,d.jpg,0.5"))
         self.assertEqual(set(colmap.images_in(self.folder / "colmap" / "best")), {"c.jpg", "d.jpg"})
         self.assertIn("could not join all images: 1 more models, of 2 images", said)
         self.assertIn("a.jpg, b.jpg: in another model, of 2 photographs", said)
@@ -188,7 +185,7 @@ class Poses(Databases):
     def test_no_model_is_a_failure_that_names_the_log(self):
         (self.folder / "colmap").mkdir()
         with self.assertRaisesRegex(Failure, "COLMAP found no poses: see .*poses.log"):
-            self.best(self.given())
+            self.best(options_of())
 
     def test_a_damaged_model_has_no_names(self):
         model = self.model(self.folder / "colmap" / "0", self.NAMES)

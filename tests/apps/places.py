@@ -64,6 +64,20 @@ def centres_of(model):
     return result
 
 
+def thin(source, target, step):
+    """Copies a text model with every `step`-th point only, so that refining it is fast."""
+    kept = records(os.path.join(source, "points3D.txt"))[::step]
+    ids = {line.split(" ")[0] for line in kept}
+    lines = []
+    for pose, observations in image_lines(os.path.join(source, "images.txt")):
+        words = observations.split(" ")
+        words[2::3] = [word if word in ids else "-1" for word in words[2::3]]
+        lines += [pose, " ".join(words)]
+    write(os.path.join(target, "cameras.txt"), read(os.path.join(source, "cameras.txt")))
+    write(os.path.join(target, "images.txt"), "\n".join(lines) + "\n")
+    write(os.path.join(target, "points3D.txt"), "\n".join(kept) + "\n")
+
+
 def points_of(model):
     return {int(words[0]): tuple(float(w) for w in words[1:4]) for words in
             (line.split(" ") for line in records(os.path.join(model, "points3D.txt")))}
