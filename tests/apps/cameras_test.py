@@ -145,15 +145,13 @@ class CamerasCase(InFolder):
 
 
 class Groups(CamerasCase):
-    def test_photographs_like_the_lens_are_one_camera(self):
-        self.assertEqual(self.given([(480, 360, 18)] * 3).cameras, [])
-
-    def test_the_orientation_makes_no_camera(self):
-        """All programs use pixels as they are stored."""
-        self.assertEqual(self.given([(480, 360, 18), (480, 360, 18, "", 6)]).cameras, [])
-
-    def test_a_rounded_focal_length_and_missing_data_make_no_camera(self):
-        self.assertEqual(self.given([(480, 360, 180), (480, 360, 180.1), (480, 360)]).cameras, [])
+    def test_alike_photographs_are_one_camera(self):
+        """All programs use pixels as they are stored, so that the orientation makes no camera. Neither do a rounded
+        focal length and missing data."""
+        for photos in ([(480, 360, 18)] * 3, [(480, 360, 18), (480, 360, 18, "", 6)],
+                       [(480, 360, 180), (480, 360, 180.1), (480, 360)]):
+            with self.subTest(photos):
+                self.assertEqual(self.given(photos).cameras, [])
 
     def test_all_photographs_may_be_smaller_than_the_lens(self):
         given = self.given([(240, 180)] * 3)

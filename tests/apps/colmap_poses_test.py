@@ -13,6 +13,7 @@ from programs import main
 from axial_pipeline import colmap, database, features, left_out, lenses, poses, start_lens
 from axial_pipeline.failure import Failure
 
+
 class Features(Databases):
     def test_number_scale_and_spread_are_those_of_the_file(self):
         found = database.features(self.database({"a.jpg": (2000, SHARP), "b.jpg": (0, SHARP)}))
@@ -47,11 +48,15 @@ class Features(Databases):
                          {"clear.jpg": 3000, "hazy.jpg": 2500})
         self.assertEqual(list(self.folder.glob("weak_features*")), [])
 
-    def test_weak_features_do_not_hide_blur(self):
-        # Noise and traces of JPEG make fine features, but only weak ones.
-        file = self.database({f"{i}.jpg": (3000, SHARP) for i in range(4)} | {"blurred.jpg": (25, BLURRED)})
-        self.assertEqual(self.said_by(features.take_weak_features, file, None, self.folder), "")
-        self.assertEqual(list(features.blurred(database.features(file))[0]), ["blurred.jpg"])
+    def test_no_weak_features_are_added_to_many_or_to_blurred_ones(self):
+        """Noise and traces of JPEG make fine features, but only weak ones, which would hide blur."""
+        for photographs, blurred in (({"clear.jpg": (3000, SHARP)}, []),
+                                     ({f"{i}.jpg": (3000, SHARP) for i in range(4)} | {"blurred.jpg": (25, BLURRED)},
+                                      ["blurred.jpg"])):
+            with self.subTest(photographs):
+                file = self.database(photographs, f"{len(photographs)}.db")
+                self.assertEqual(self.said_by(features.take_weak_features, file, None, self.folder), "")
+                self.assertEqual(list(features.blurred(database.features(file))[0]), blurred)
 
     def detector(self, strengths):
         """A detector. `strengths`: by name, the threshold at which a photograph has features, with their scale."""
@@ -91,10 +96,6 @@ class Features(Databases):
     def test_a_handful_of_features_tells_no_blur(self):
         file = self.database({f"{i}.jpg": (3000, SHARP) for i in range(4)} | {"hazy.jpg": (5, BLURRED)})
         self.assertEqual(features.blurred(database.features(file))[0], {})
-
-    def test_nothing_is_added_to_many_features(self):
-        file = self.database({"clear.jpg": (3000, SHARP)})
-        self.assertEqual(self.said_by(features.take_weak_features, file, None, self.folder), "")
 
 
 class Lens(Databases):

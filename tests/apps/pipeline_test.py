@@ -336,12 +336,6 @@ class Steps(InFolder):
         self.write("read", "changed")
         self.assertEqual(self.run_all("b"), [])
 
-    def test_damaged_records_are_no_records(self):
-        for damaged in ("", "{", "[]"):
-            self.run_all("a")
-            self.write("steps/first.done.json", damaged)
-            self.assertEqual(self.run_all("a"), [])
-
     def test_records_do_not_grow_with_the_inputs(self):
         for number in range(1000):
             self.write(f"read/{number}", "")
