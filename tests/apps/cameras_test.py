@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Photographs of several sizes, focal lengths and cameras, and turned photographs, in `reconstruct`."""
 
-import argparse
 import dataclasses
 import json
 import pathlib
@@ -12,7 +11,7 @@ import subprocess
 import unittest
 
 from colmap_databases import SHARP, Databases
-from pipeline_folder import InFolder, reconstruct_command, simulate
+from pipeline_folder import InFolder, options_of, reconstruct_command, simulate
 from programs import ProgramTest, grey_png, main, read, write
 from stand_ins import StandIns
 from support import colmap_text
@@ -132,7 +131,7 @@ class CamerasCase(InFolder):
         port = {"type": "flat", "normal": [0, 0.1, 0.99], "sigma": {"normal_degrees": [1, 2]}}
         file = self.write("housing.json", json.dumps(housing or {"version": 1, "default": "main",
                                                                  "ports": {"main": port}}))
-        given = argparse.Namespace(images=str(self.folder / "images"), lenses=files, lens=files[0], housing=str(file))
+        given = options_of(images=str(self.folder / "images"), lenses=files, lens=files[0], housing=str(file))
         given.cameras, self.left_out = cameras.of(given, photographs.found_in(given.images).images)
         return given
 
@@ -146,15 +145,13 @@ class CamerasCase(InFolder):
 
 
 class Groups(CamerasCase):
-    def test_photographs_like_the_lens_are_one_camera(self):
-        self.assertEqual(self.given([(480, 360, 18)] * 3).cameras, [])
-
-    def test_the_orientation_makes_no_camera(self):
-        """All programs use pixels as they are stored."""
-        self.assertEqual(self.given([(480, 360, 18), (480, 360, 18, "", 6)]).cameras, [])
-
-    def test_a_rounded_focal_length_and_missing_data_make_no_camera(self):
-        self.assertEqual(self.given([(480, 360, 180), (480, 360, 180.1), (480, 360)]).cameras, [])
+    def test_alike_photographs_are_one_camera(self):
+        """All programs use pixels as they are stored, so that the orientation makes no camera. Neither do a rounded
+        focal length and missing data."""
+        for photos in ([(480, 360, 18)] * 3, [(480, 360, 18), (480, 360, 18, "", 6)],
+                       [(480, 360, 180), (480, 360, 180.1), (480, 360)]):
+            with self.subTest(photos):
+                self.assertEqual(self.given(photos).cameras, [])
 
     def test_all_photographs_may_be_smaller_than_the_lens(self):
         given = self.given([(240, 180)] * 3)
@@ -323,8 +320,7 @@ class TwoSizes(ProgramTest):
         for number in range(3):
             name = f"000{number}.jpg"
             shutil.copyfile(self.path("400", "water", name), self.path("480", "water", name))
-        images = pathlib.Path(self.path("480", "sparse", "images.txt"))
-        write(self.path("positions.txt"), colmap_text.positions(images.parent))
+        write(self.path("positions.txt"), colmap_text.positions(pathlib.Path(self.path("480", "sparse"))))
         command = reconstruct_command(
             "--scale-from", f"positions:{self.path('positions.txt')}", "--until", "cloud",
             source=("--images", self.path("480", "water")), lens=self.path("480", "sparse", "cameras.txt"),

@@ -2,7 +2,6 @@
 """`reconstruct --matcher cascade`: few features for pairs that look alike, all features where they overlap, and what
 is missing. A stand-in for COLMAP finds the matches."""
 
-import argparse
 import array
 import contextlib
 import fnmatch
@@ -16,7 +15,7 @@ import unittest
 import unittest.mock
 
 from colmap_databases import add_photograph, make_tables
-from pipeline_folder import InFolder, simulate
+from pipeline_folder import InFolder, options_of, simulate
 from programs import main
 from stand_ins import StandIns, photograph
 
@@ -94,8 +93,7 @@ class WithStandIn(InFolder):
                 self.photograph(connection, image, range(4 * image, 4 * image + 16), **more)
 
     def given(self, **more):
-        return argparse.Namespace(**{"matches": "", "matcher": "cascade", "scale_from": "", "vocabulary": "",
-                                     "images": str(self.folder), **more})
+        return options_of(**{"matcher": "cascade", "images": str(self.folder), **more})
 
     def step(self, prepare=lambda: None, **more):
         return matching.step(self.given(**more), self.features, self.full, prepare)
@@ -323,7 +321,7 @@ class WithColmap(InFolder):
         subprocess.run([str(word) for word in colmap.features(features, self.folder / "scene" / "water", "PINHOLE")],
                        check=True, capture_output=True)
         names = database.names(features)
-        given = argparse.Namespace(matches="", matcher="cascade", scale_from="", vocabulary="", images="")
+        given = options_of(matcher="cascade")
         with unittest.mock.patch.object(overview, "ALL", 4):
             said = self.said_by(steps.run_all, [matching.step(given, features, full)], self.folder)
         self.assertIn(" of 28 pairs\n", said)

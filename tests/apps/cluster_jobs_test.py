@@ -4,7 +4,7 @@
 import argparse
 import json
 
-from pipeline_folder import InFolder
+from pipeline_folder import InFolder, options_of
 from programs import main
 
 from axial_pipeline import cluster, jobs, one_step, reconstruct_options, reconstruct_steps, step_kinds, steps
@@ -52,16 +52,9 @@ class Jobs(InFolder):
                              for stage in ("photometric", "geometric1")},
                 "fusion": {"cpu_seconds": 9600, "memory_mb": 1000}}
         self.write(jobs.PLAN, json.dumps(plan))
-        given = {"output": str(self.folder), "images": "images", "lens": str(lens), "housing": "h",
-                 "scale_from": "", "refine": "", "matcher": "exhaustive", "vocabulary": "",
-                 "lens_model": "OPENCV",
-                 "refine_poses": "", "densify": "", "mesh": "", "refine_mesh": "", "texture": "",
-                 "features": "", "matches": "", "poses": "", "keep_all": False, "cameras": [], "doubled": {},
-                 "lenses": [str(lens)], "lines": [], "videos": [],
-                 "map": "", "compare": "", "page": "",
-                 "tiles": 1, "until": "cloud", "without": "",
-                 "earlier": "", "truth": "", "programs": "bin", "masks": "", "ignore_mask_label": "", **more}
-        return jobs.Survey({"given": given, "images": images,
+        given = options_of(**{"output": str(self.folder), "lens": str(lens), "lenses": [str(lens)], "until": "cloud",
+                              "matcher": "exhaustive", "lens_model": "OPENCV", "programs": "bin", **more})
+        return jobs.Survey({"given": vars(given), "images": images,
                             "node": {"cpus": 64, "memory_mb": 10**6}}, reconstruct_steps.steps)
 
     def test_programs_that_plan_their_memory_keep_to_their_job(self):

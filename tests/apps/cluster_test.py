@@ -13,6 +13,7 @@ import unittest
 
 import small_slurm
 from pipeline_folder import reconstruct_command, simulate
+from places import thin
 from programs import BIN, main
 
 RESULTS = ("scene_dense.mvs", "scene_dense.ply", "scene_dense_mesh.ply", "scene_dense_refined.ply",
@@ -47,29 +48,6 @@ exec "{program}" "$@"
 """
 
 
-def words_of(file):
-    return [line.split() for line in file.read_text().splitlines() if not line.startswith("#")]
-
-
-def thinned(model, target, every):
-    """Writes a COLMAP text model with one of `every` points of `model`, and their observations."""
-    target.mkdir()
-    shutil.copy(model / "cameras.txt", target)
-    points = words_of(model / "points3D.txt")[::every]
-    kept, images, index = {point[0] for point in points}, words_of(model / "images.txt"), {}
-    lines = []
-    for head, seen in zip(images[::2], images[1::2]):
-        observations = [seen[start:start + 3] for start in range(0, len(seen), 3)]
-        new = [(old, words) for old, words in enumerate(observations) if words[2] in kept]
-        index.update({(head[0], str(old)): str(number) for number, (old, _) in enumerate(new)})
-        lines += [" ".join(head), " ".join(" ".join(words) for _, words in new)]
-    (target / "images.txt").write_text("\n".join(lines) + "\n")
-    tracks = [[word for image, old in zip(point[8::2], point[9::2])
-               for word in (image, index[image, old])] for point in points]
-    (target / "points3D.txt").write_text("".join(
-        " ".join(point[:8] + track) + "\n" for point, track in zip(points, tracks)))
-
-
 def put_script(path, text):
     path.write_text(text)
     path.chmod(0o755)
@@ -85,7 +63,7 @@ class Survey(unittest.TestCase):
         cls.folder = pathlib.Path(keeper.name).resolve()
         scene = cls.folder / "scene"
         simulate(scene, "survey", 60, (160, 120))
-        thinned(scene / "sparse", cls.folder / "model", 60)
+        thin(scene / "sparse", cls.folder / "model", 60)
         cls.programs = cls.folder / "bin"
         cls.programs.mkdir()
         for program in pathlib.Path(BIN).resolve().iterdir():

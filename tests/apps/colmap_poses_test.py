@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Features and poses of COLMAP in `reconstruct`: databases written by hand, and stand-ins for COLMAP."""
 
-import argparse
 import json
 import shutil
 import struct
 import unittest.mock
 
 from colmap_databases import BLURRED, SHARP, Databases
+from pipeline_folder import options_of
 from programs import main
 
 from axial_pipeline import colmap, database, features, left_out, lenses, poses, start_lens
 from axial_pipeline.failure import Failure
+
 
 class Features(Databases):
     def test_number_scale_and_spread_are_those_of_the_file(self):
@@ -47,11 +48,15 @@ class Features(Databases):
                          {"clear.jpg": 3000, "hazy.jpg": 2500})
         self.assertEqual(list(self.folder.glob("weak_features*")), [])
 
-    def test_weak_features_do_not_hide_blur(self):
-        # Noise and traces of JPEG make fine features, but only weak ones.
-        file = self.database({f"{i}.jpg": (3000, SHARP) for i in range(4)} | {"blurred.jpg": (25, BLURRED)})
-        self.assertEqual(self.said_by(features.take_weak_features, file, None, self.folder), "")
-        self.assertEqual(list(features.blurred(database.features(file))[0]), ["blurred.jpg"])
+    def test_no_weak_features_are_added_to_many_or_to_blurred_ones(self):
+        """Noise and traces of JPEG make fine features, but only weak ones, which would hide blur."""
+        for photographs, blurred in (({"clear.jpg": (3000, SHARP)}, []),
+                                     ({f"{i}.jpg": (3000, SHARP) for i in range(4)} | {"blurred.jpg": (25, BLURRED)},
+                                      ["blurred.jpg"])):
+            with self.subTest(photographs):
+                file = self.database(photographs, f"{len(photographs)}.db")
+                self.assertEqual(self.said_by(features.take_weak_features, file, None, self.folder), "")
+                self.assertEqual(list(features.blurred(database.features(file))[0]), blurred)
 
     def detector(self, strengths):
         """A detector. `strengths`: by name, the threshold at which a photograph has features, with their scale."""
@@ -92,10 +97,6 @@ class Features(Databases):
         file = self.database({f"{i}.jpg": (3000, SHARP) for i in range(4)} | {"hazy.jpg": (5, BLURRED)})
         self.assertEqual(features.blurred(database.features(file))[0], {})
 
-    def test_nothing_is_added_to_many_features(self):
-        file = self.database({"clear.jpg": (3000, SHARP)})
-        self.assertEqual(self.said_by(features.take_weak_features, file, None, self.folder), "")
-
 
 class Lens(Databases):
     def test_the_lens_behind_the_port_is_that_of_the_cameras(self):
@@ -116,9 +117,6 @@ class Lens(Databases):
 class Poses(Databases):
     NAMES = ("a.jpg", "b.jpg", "c.jpg", "d.jpg")
 
-    def given(self, **changes):
-        return argparse.Namespace(**{"scale_from": "", "lens_model": "", "images": "images", **changes})
-
     def best(self, given, free=None):
         """Takes the best model. `free`: makes the models of the second try in a folder."""
         (self.folder / "logs").mkdir(exist_ok=True)
@@ -131,13 +129,13 @@ class Poses(Databases):
 
     def test_all_photographs_need_no_second_try(self):
         self.model(self.folder / "colmap" / "0", self.NAMES)
-        said = self.best(self.given(), lambda folder: self.fail("tried again"))
+        said = self.best(options_of(), lambda folder: self.fail("tried again"))
         self.assertEqual(said, "    4 of 4 photographs have poses\n")
         self.assertEqual(poses.lines_about(self.folder), ["4 of 4 photographs have poses"])
 
     def test_the_try_with_more_photographs_is_kept(self):
         self.model(self.folder / "colmap" / "0", self.NAMES[:2])
-        said = self.best(self.given(), lambda folder: self.model(folder / "0", self.NAMES[:3], 500))
+        said = self.best(options_of(), lambda folder: self.model(folder / "0", self.NAMES[:3], 500))
         self.assertIn("3 of 4 photographs have poses", said)
         self.assertIn("d.jpg: 12 features", said)
         self.assertEqual(set(colmap.images_in(self.folder / "colmap" / "best")), set(self.NAMES[:3]))
@@ -148,14 +146,14 @@ class Poses(Databases):
         shutil.copyfile(self.folder / "features.db", file)
         self.said_by(left_out.leave_out, self.folder / "features.db", file, {"e.jpg": "a.jpg"})
         self.model(self.folder / "colmap" / "0", self.NAMES)
-        said = self.said_by(poses.take_best, file, self.given(), self.folder, [])
+        said = self.said_by(poses.take_best, file, options_of(), self.folder, [])
         self.assertEqual(said.splitlines(), ["    4 of 5 photographs have poses",
                                              "    warning: 1 photographs have no pose",
                                              "    no pose: e.jpg: the same file as a.jpg, and left out"])
 
     def test_photographs_that_got_a_pose_later_count(self):
         self.model(self.folder / "colmap" / "0", self.NAMES[:2])
-        self.best(self.given(lens_model="OPENCV"))
+        self.best(options_of(lens_model="OPENCV"))
         self.assertEqual(poses.lines_about(self.folder)[0], "2 of 4 photographs have poses")
         self.said_by(poses.print_changes, self.folder)
         (self.folder / "refined").mkdir()
@@ -168,19 +166,19 @@ class Poses(Databases):
 
     def test_a_lens_that_ran_away_is_refused(self):
         self.model(self.folder / "colmap" / "0", self.NAMES[:2])
-        said = self.best(self.given(), lambda folder: self.model(folder / "0", self.NAMES, 23))
+        said = self.best(options_of(), lambda folder: self.model(folder / "0", self.NAMES, 23))
         self.assertIn("its focal length ran from 400 to 23 px", said)
         self.assertIn("2 of 4 photographs have poses", said)
 
     def test_of_equal_models_the_fixed_lens_counts(self):
         self.model(self.folder / "colmap" / "0", self.NAMES[:2])
-        self.best(self.given(), lambda folder: self.model(folder / "0", self.NAMES[2:]))
+        self.best(options_of(), lambda folder: self.model(folder / "0", self.NAMES[2:]))
         self.assertEqual(set(colmap.images_in(self.folder / "colmap" / "best")), {"a.jpg", "b.jpg"})
 
     def test_of_equal_places_the_one_with_the_known_length_counts(self):
         for number, names in enumerate((self.NAMES[:2], self.NAMES[2:])):
             self.model(self.folder / "colmap" / str(number), names)
-        said = self.best(self.given(lens_model="OPENCV", scale_from="images:c.jpg,d.jpg,0.5"))
+        said = self.best(options_of(lens_model="OPENCV", scale_from="images:c.jpg,d.jpg,0.5"))
         self.assertEqual(set(colmap.images_in(self.folder / "colmap" / "best")), {"c.jpg", "d.jpg"})
         self.assertIn("could not join all images: 1 more models, of 2 images", said)
         self.assertIn("a.jpg, b.jpg: in another model, of 2 photographs", said)
@@ -188,7 +186,7 @@ class Poses(Databases):
     def test_no_model_is_a_failure_that_names_the_log(self):
         (self.folder / "colmap").mkdir()
         with self.assertRaisesRegex(Failure, "COLMAP found no poses: see .*poses.log"):
-            self.best(self.given())
+            self.best(options_of())
 
     def test_a_damaged_model_has_no_names(self):
         model = self.model(self.folder / "colmap" / "0", self.NAMES)

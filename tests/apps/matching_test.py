@@ -2,7 +2,6 @@
 """The pairs that `reconstruct --matcher` lets COLMAP match: options, GPS positions of photographs, and
 the positions in COLMAP's database."""
 
-import argparse
 import itertools
 import pathlib
 import shutil
@@ -13,7 +12,7 @@ import unittest
 import unittest.mock
 
 from colmap_databases import make_tables
-from pipeline_folder import InFolder, simulate
+from pipeline_folder import InFolder, options_of, simulate
 from programs import grey_png, main
 
 from axial_pipeline import colmap, matching, photographs
@@ -73,8 +72,8 @@ class Matching(InFolder):
         self.put_script("colmap", f"echo '{options}'")
 
     def given(self, matcher, scale_from="", vocabulary=""):
-        return argparse.Namespace(matches="", matcher=matcher, scale_from=scale_from, vocabulary=vocabulary,
-                                  images=str(self.folder / "images"))
+        return options_of(matcher=matcher, scale_from=scale_from, vocabulary=vocabulary,
+                          images=str(self.folder / "images"))
 
     def with_positions(self):
         return self.given("spatial", f"positions:{self.positions}")
@@ -247,8 +246,7 @@ class WithColmap(InFolder):
 
     def matched(self, images, scale_from=""):
         """The pairs that COLMAP compares with two neighbours of each photograph."""
-        given = argparse.Namespace(matches="", matcher="spatial", scale_from=scale_from, vocabulary="",
-                                   images=str(images))
+        given = options_of(matcher="spatial", scale_from=scale_from, images=str(images))
         features, database = self.folder / "features.db", self.folder / "database.db"
         with unittest.mock.patch.object(matching, "NEIGHBOURS", 2):
             check(given)

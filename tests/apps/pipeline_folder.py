@@ -2,6 +2,7 @@
 """A test in a folder of its own, for tests of apps/pipeline/axial_pipeline, which it makes
 importable, and the commands of the pipeline."""
 
+import argparse
 import contextlib
 import io
 import os
@@ -17,6 +18,14 @@ from programs import BIN, grey_png, run
 
 PIPELINE = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline"
 sys.path.insert(0, str(PIPELINE))
+
+from axial_pipeline.reconstruct_options import options  # noqa: E402
+
+
+def options_of(**changes):
+    """The options of `reconstruct` with their defaults and these changes, as its checks leave them."""
+    given = options(PIPELINE, "", ["--images", "images", "--lens", "lens", "--housing", "housing", "-o", "out"])
+    return argparse.Namespace(**{**vars(given), "lens": "lens", "cameras": [], "doubled": {}, "lines": [], **changes})
 
 
 def reconstruct_command(*options, source=("--images", "images"), lens="lens", housing="housing", out="out",

@@ -246,7 +246,7 @@ class DamagedFiles(StandIns):
         self.succeeds()
         record = self.folder / "out" / "steps" / "map.done.json"
         whole = json.loads(record.read_text())
-        for damaged in ("[" * 100000, json.dumps({**whole, "seconds": "1"}), b"\xff\xfe",
+        for damaged in ("", "{", "[]", "[" * 100000, json.dumps({**whole, "seconds": "1"}), b"\xff\xfe",
                         json.dumps({**whole, "seconds": float("nan")})):
             self.write("out/steps/map.done.json", damaged)
             self.assertEqual(self.done_before(), 10)
@@ -396,7 +396,7 @@ class OutOfDate(StandIns):
 
     def test_maps_of_other_options_are_removed(self):
         self.succeeds()
-        for name in ("scene_map.hillshade.tif", "scene_map.contours.geojson"):
+        for name in ("scene_map.hillshade.tif", "scene_map.contours.geojson", "scene_map.sigma.tif"):
             self.write(f"out/{name}")
         self.succeeds("--map=--hillshade")
         self.assertEqual([path.name for path in (self.folder / "out").glob("scene_map.*")

@@ -168,12 +168,6 @@ class WithStandIns(StandIns):
         self.write("out/scene_dense_backup.ply", "")
         self.succeeds("--earlier", "out/scene_dense_backup.ply", "--without", "map,page")
 
-    def test_maps_of_other_options_do_not_keep_old_errors(self):
-        self.succeeds()
-        errors = self.write("out/scene_map.sigma.tif", "")
-        self.succeeds("--map=--image-noise 0")
-        self.assertFalse(errors.exists())
-
     def test_a_matcher_without_its_input_is_refused_at_once(self):
         for options, said in (
                 (["spatial"], "--matcher spatial: none of the photographs in "

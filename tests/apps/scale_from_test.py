@@ -7,23 +7,8 @@ import math
 import os
 import tempfile
 
-from places import centres_of, image_lines, points_of
+from places import centres_of, image_lines, points_of, thin
 from programs import ProgramTest, files_below, main, read, run, write
-
-
-def thin(source, target, step):
-    """Copies a text model with every `step`-th point only, so that refining it is fast."""
-    kept = [line for line in read(os.path.join(source, "points3D.txt")).decode().split("\n")
-            if line and line[0] != "#"][::step]
-    ids = {line.split(" ")[0] for line in kept}
-    lines = []
-    for pose, observations in image_lines(os.path.join(source, "images.txt")):
-        words = observations.split(" ")
-        words[2::3] = [word if word in ids else "-1" for word in words[2::3]]
-        lines += [pose, " ".join(words)]
-    write(os.path.join(target, "cameras.txt"), read(os.path.join(source, "cameras.txt")))
-    write(os.path.join(target, "images.txt"), "\n".join(lines) + "\n")
-    write(os.path.join(target, "points3D.txt"), "\n".join(kept) + "\n")
 
 
 class Scales(ProgramTest):

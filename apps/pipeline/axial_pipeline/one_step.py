@@ -11,10 +11,10 @@ from .failure import run_main
 from .jobs import Survey
 from .option_files import has_option
 from .running import die_with
+from .step_kinds import KINDS
 from .steps import Records, is_done, perform
 
-WITH_LIMITS = ("DensifyPointCloud", "ReconstructMesh", "RefineMesh", "TextureMesh",
-               "MapSurface", "CompareSurveys")
+WITH_LIMITS = [kind.program for kind in KINDS.values() if kind.has_limits]
 
 
 def limits_of(command, cpus, memory):

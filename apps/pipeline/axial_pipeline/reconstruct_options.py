@@ -13,14 +13,14 @@ from .failure import Failure
 from .option_files import find_option, has_option
 from .ownership import is_record
 from .programs import NAMES, Programs, default_folder, require, words_of
-from .step_kinds import KINDS, OPTIONS, ORDER
+from .step_kinds import KINDS, OPTIONS, ORDER, RESULTS
 
-RESULTS = ("poses", "cloud", "mesh", "texture", "map", "page")
-SKIPPED = ("refine-mesh", "texture", "map", "page")  # steps that may be left out
+SKIPPED = [name for name, kind in KINDS.items() if kind.can_be_left_out]
 MOST_TILES = 1000  # as in the programs
 
 
-def options(script_folder, description):
+def options(script_folder, description, words=None):
+    """The options of a command line: `words`, or those of this process."""
     programs = os.environ.get("AXIAL_BIN", str(default_folder(script_folder)))
     parser = argparse.ArgumentParser(description=description)
     source = parser.add_mutually_exclusive_group()
@@ -82,7 +82,7 @@ def options(script_folder, description):
                         "in one word")
     parser.add_argument("--programs", default=programs,
                         help="folder of the programs (default: %(default)s)")
-    return parser.parse_args()
+    return parser.parse_args(words)
 
 
 # Options of programs that contradict tiles, which `reconstruct` asks for.
@@ -149,7 +149,7 @@ def check_results(given):
 def check_mask_labels(given):
     """Refuses a label of masks for a program that gets the masks of --masks, which have labels of
     their own."""
-    names = ("densify", "refine-mesh", "texture", "map") if given.masks else ()
+    names = [name for name in KINDS if KINDS[name].takes_masks or name == "map"] if given.masks else []
     words = {name: words_of(name, given) for name in names}
     for name in names:
         own = words[name] + (words["texture"] if name == "map" else [])

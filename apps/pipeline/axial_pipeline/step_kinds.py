@@ -22,7 +22,9 @@ class Kind:
     program: str = ""  # gets the words of an option
     option: str = ""   # the name of this option, if it is not that of the step
     result: str = ""   # the first result of --until for which the step runs; it always runs if there is none
+    can_be_left_out: bool = False  # by --without
     takes_masks: bool = False  # whether the program takes the masks of --masks
+    has_limits: bool = False  # whether the program keeps to a number of threads and a memory
     parts: tuple = ()  # patterns of the names of the jobs of which --cluster makes the step
 
 
@@ -42,23 +44,27 @@ KINDS = {
                    (2000, 2, 30, 0.02)),
     # The plan of DensifyPointCloud replaces these needs.
     "densify": Kind(["scene_dense.*", "depth[0-9]*.*", "depth_inputs.json", "depth_maps.lock", "steps/plan.json"],
-                    (4000, 0, 60, 0.2), "DensifyPointCloud", result="cloud", takes_masks=True,
+                    (4000, 0, 60, 0.2), "DensifyPointCloud", result="cloud", takes_masks=True, has_limits=True,
                     parts=("plan", "depth-*", "densify-tile-*")),
-    "mesh": Kind(["scene_dense_mesh.*"], (8000, 4, 60, 0.5), "ReconstructMesh", result="mesh",
+    "mesh": Kind(["scene_dense_mesh.*"], (8000, 4, 60, 0.5), "ReconstructMesh", result="mesh", has_limits=True,
                  parts=("mesh-tile-*",)),
-    "refine-mesh": Kind(["scene_dense_refined.*"], (8000, 4, 60, 1), "RefineMesh", result="mesh", takes_masks=True),
+    "refine-mesh": Kind(["scene_dense_refined.*"], (8000, 4, 60, 1), "RefineMesh", result="mesh", can_be_left_out=True,
+                        takes_masks=True, has_limits=True),
     "texture": Kind([f"scene_textured{tile}{end}" for tile in ("", TILE) for end in TEXTURED], (8000, 4, 60, 0.5),
-                    "TextureMesh", result="texture", takes_masks=True),
-    "map": Kind([f"scene_map.{kind}" for kind in MAPS], (8000, 4, 60, 0.5), "MapSurface",
-                result="map"),  # gets the masks of "texture"
+                    "TextureMesh", result="texture", can_be_left_out=True, takes_masks=True, has_limits=True),
+    "map": Kind([f"scene_map.{kind}" for kind in MAPS], (8000, 4, 60, 0.5), "MapSurface", result="map",
+                can_be_left_out=True, has_limits=True),  # gets the masks of "texture"
     "compare": Kind([f"{name}.{kind}" for name in ("scene.change", "scene_change")  # the last: of older versions
-                     for kind in CHANGES], (8000, 4, 30, 0.1), "CompareSurveys", result="mesh"),
-    "page": Kind(["page", "run.json", "run.json.tmp"], (8000, 1, 30, 0.05), "ViewScene", result="page"),
+                     for kind in CHANGES], (8000, 4, 30, 0.1), "CompareSurveys", result="mesh",
+                    has_limits=True),
+    "page": Kind(["page", "run.json", "run.json.tmp"], (8000, 1, 30, 0.05), "ViewScene", result="page",
+                 can_be_left_out=True),
     "evaluate": Kind(["evaluation.json"], (8000, 0, 60, 0))}
 ORDER = list(KINDS)
 NEEDS_OF_PLAN = (2000, 2, 30, 0.02)  # as needs, of the job "plan"
 # The options whose words are options for a program, and this program.
 OPTIONS = {kind.option or name: kind.program for name, kind in KINDS.items() if kind.program}
+RESULTS = ("poses", *dict.fromkeys(kind.result for kind in KINDS.values() if kind.result))  # of --until
 JOBS = re.compile(r"(plan|depth)(?:-|$)|(\w+)-tile-")  # names of the jobs of --cluster
 
 
