@@ -13,8 +13,8 @@ import unittest
 
 import small_slurm
 from pipeline_folder import reconstruct_command, simulate
-from places import thin
 from programs import BIN, main
+from support import colmap_text
 
 RESULTS = ("scene_dense.mvs", "scene_dense.ply", "scene_dense_mesh.ply", "scene_dense_refined.ply",
            *(f"scene_textured.tile{tile}-2.{kind}" for tile in (1, 2) for kind in ("glb", "ply")),
@@ -63,7 +63,7 @@ class Survey(unittest.TestCase):
         cls.folder = pathlib.Path(keeper.name).resolve()
         scene = cls.folder / "scene"
         simulate(scene, "survey", 60, (160, 120))
-        thin(scene / "sparse", cls.folder / "model", 60)
+        colmap_text.copy(scene / "sparse", cls.folder / "model", lambda number: number % 60 == 0)
         cls.programs = cls.folder / "bin"
         cls.programs.mkdir()
         for program in pathlib.Path(BIN).resolve().iterdir():

@@ -5,10 +5,12 @@ reported as not used."""
 import json
 import math
 import os
+import pathlib
 import tempfile
 
-from places import centres_of, image_lines, points_of, thin
+from places import centres_of, image_lines, points_of
 from programs import ProgramTest, files_below, main, read, run, write
+from support import colmap_text
 
 
 class Scales(ProgramTest):
@@ -23,7 +25,7 @@ class Scales(ProgramTest):
                    "--width", 320, "--height", 240, "--samples", 1, "-o", cls.scene)
         assert made.returncode == 0, made.stderr
         cls.sparse = os.path.join(cls.scene, "few")
-        thin(os.path.join(cls.scene, "sparse"), cls.sparse, 6)
+        colmap_text.copy(pathlib.Path(cls.scene, "sparse"), pathlib.Path(cls.sparse), lambda number: number % 6 == 0)
         cls.centres = centres_of(cls.sparse)
         cls.names = sorted(cls.centres)
 
