@@ -3,7 +3,6 @@
 without the programs under test: PLY, .mvs, .dmap, glTF, PNG and COLMAP's text models. geotiff.py reads maps."""
 
 import array
-import itertools
 import json
 import math
 import os
@@ -35,23 +34,33 @@ class Ply:
             if words[0] == "element":
                 elements.append((words[1], int(words[2]), []))
             elif words[0] == "property":
-                elements[-1][2].append((words[-1], [self.KINDS[kind] for kind in words[1:-1] if kind != "list"]))
-        rows = {name: [self.row(properties) for _ in range(count)] for name, count, properties in elements}
+                *length, kind = (self.KINDS[kind] for kind in words[1:-1] if kind != "list")
+                runs = elements[-1][2]
+                if length or not runs or runs[-1][2]:
+                    runs.append([[words[-1]], kind, length])
+                else:
+                    runs[-1][0].append(words[-1])
+                    runs[-1][1] += kind
+        rows = {name: [self.row(runs) for _ in range(count)] for name, count, runs in elements}
         assert self.words or self.at == len(self.body)
         self.vertices, self.faces = rows["vertex"], rows.get("face", [])
 
-    def row(self, properties):
+    def row(self, runs):
+        """`runs`: names and kinds of numbers that follow each other, or of a list with the kind of its length."""
         found = {}
-        for name, kinds in properties:
-            count = self.values(1, kinds[0])[0] if len(kinds) == 2 else 1
-            found[name] = self.values(count, kinds[-1])
+        for names, kinds, length in runs:
+            if length:
+                found[names[0]] = self.values(kinds * self.values(length[0])[0])
+            else:
+                found.update(zip(names, zip(self.values(kinds))))
         return found
 
-    def values(self, count, kind):
+    def values(self, kinds):
         if self.words:
-            return tuple(map(float if kind in "fd" else int, itertools.islice(self.words, count)))
-        self.at += struct.calcsize(f"<{count}{kind}")
-        return struct.unpack_from(f"<{count}{kind}", self.body, self.at - struct.calcsize(f"<{count}{kind}"))
+            return tuple(float(word) if kind in "fd" else int(word) for kind, word in zip(kinds, self.words))
+        found = struct.unpack_from("<" + kinds, self.body, self.at)
+        self.at += struct.calcsize("<" + kinds)
+        return found
 
     @property
     def points(self):
