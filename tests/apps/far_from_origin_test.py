@@ -8,7 +8,7 @@ import re
 import unittest.mock
 
 import tiny_scene
-from places import FAR, FAR_AND_ODD, move_mesh, move_model
+from places import FAR, FAR_AND_ODD, move_mesh, move_model, thin
 from programs import ProgramTest, main, must, read, write
 from readers import Ply, added, centres_of, points_of
 from worlds import CLOSEUP, ROUGH, Simulated, geo_offset, housing, lake
@@ -247,7 +247,9 @@ class FarScene(Simulated):
                 self.same_places(found, wanted, 1e-6)
 
     def refined(self, model, out, scale, *more):
-        return self.succeeds("RefinePoses", "-i", self.at(model), "--lens", os.path.join(self.truth, "sparse"),
+        few = self.path("few", model)
+        thin(self.at(model, "sparse"), few, 8)
+        return self.succeeds("RefinePoses", "-i", few, "--lens", os.path.join(self.truth, "sparse"),
                              *self.port("water"), "-o", out, "--scale-from", scale, *more).stdout
 
     def test_known_positions_place_a_model(self):
