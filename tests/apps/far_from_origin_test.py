@@ -4,13 +4,15 @@
 import json
 import math
 import os
+import pathlib
 import re
 import unittest.mock
 
 import tiny_scene
-from places import FAR, FAR_AND_ODD, move_mesh, move_model, thin
+from places import FAR, FAR_AND_ODD, move_mesh, move_model
 from programs import ProgramTest, main, must, read, write
 from readers import Ply, added, centres_of, points_of
+from support import colmap_text
 from worlds import CLOSEUP, ROUGH, Simulated, geo_offset, housing, lake
 
 QUICK = ("--resolution-level", "1", "--min-resolution", "100", "--geometric-iters", "1")
@@ -248,7 +250,7 @@ class FarScene(Simulated):
 
     def refined(self, model, out, scale, *more):
         few = self.path("few", model)
-        thin(self.at(model, "sparse"), few, 8)
+        colmap_text.copy(pathlib.Path(self.at(model, "sparse")), pathlib.Path(few), lambda number: number % 8 == 0)
         return self.succeeds("RefinePoses", "-i", few, "--lens", os.path.join(self.truth, "sparse"),
                              *self.port("water"), "-o", out, "--scale-from", scale, *more).stdout
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Changes COLMAP's models and meshes: moved far from the origin of the world, or with fewer points."""
+"""COLMAP's models and meshes moved far from the origin of the world."""
 
 import os
 
@@ -26,20 +26,6 @@ def move_model(source, target, shift):
         words = line.split(" ")
         out.append(" ".join(words[:1] + [repr(m) for m in added(map(float, words[1:4]), shift)] + words[4:]))
     write(os.path.join(target, "points3D.txt"), "\n".join(out) + "\n")
-
-
-def thin(source, target, step):
-    """Copies a text model with every `step`-th point only, so that refining it is fast."""
-    kept = records(os.path.join(source, "points3D.txt"))[::step]
-    ids = {line.split(" ")[0] for line in kept}
-    lines = []
-    for pose, observations in image_lines(os.path.join(source, "images.txt")):
-        words = observations.split(" ")
-        words[2::3] = [word if word in ids else "-1" for word in words[2::3]]
-        lines += [pose, " ".join(words)]
-    write(os.path.join(target, "cameras.txt"), read(os.path.join(source, "cameras.txt")))
-    write(os.path.join(target, "images.txt"), "\n".join(lines) + "\n")
-    write(os.path.join(target, "points3D.txt"), "\n".join(kept) + "\n")
 
 
 def move_mesh(source, target, shift, kind="double"):
