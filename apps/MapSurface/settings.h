@@ -34,7 +34,4 @@ struct Options {
 // Parses and checks the command line. Error for an unknown option and for a value out of range.
 Options parse_command_line(int argc, const char* const* argv);
 
-// The name by which messages call a setting of a library: the name of the option.
-std::string option_of(std::string_view setting);
-
 }  // namespace axial::apps

@@ -7,6 +7,7 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "base/option_list.h"
 
@@ -64,13 +65,18 @@ struct ParsedOptions {
 //     --input-file is absent, even after -h.)
 //   - The program declares --input-file, but the option is absent: prints the help. The exit code
 //     is 1.
-// Throws an Error for an unknown option, a malformed value, a missing value, a value out of range,
-// or an unusable working folder, cfg file or log file.
+// Throws an Error for an unknown option, a malformed value, a missing value, a value that breaks a
+// rule of the table (base/option_list.h), or an unusable working folder, cfg file or log file.
 ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOptions& program);
 
 // True if the user gave the option with the long name `name` on the command line or in the cfg
 // file.
 bool given(const ParsedOptions& parsed, const std::string& name);
+
+// The words by which messages call a setting of a library: the option that sets it, by the table
+// that parse_options() used last ("--mask-path" for "mask_folder"), or `setting` itself if no
+// option does. `setting`: a field, or a field with a value (OptionSetting in base/option_list.h).
+std::string option_of(std::string_view setting);
 
 // Returns `path` as an absolute path. A relative `path` starts at the working folder. An empty path
 // stays empty.
