@@ -144,7 +144,7 @@ TEST_F(RefinePoses, RefusesInOneLineThatNamesTheFault) {
   refuses("-i . --lens lens -o out", "--housing is missing");
   refuses("-i . --lens lens --housing housing.json", "--output-folder is missing");
   refuses("-i nowhere --lens lens --housing housing.json -o out", "nowhere");
-  refuses(kInput + "-o out --poses perhaps", "--poses perhaps: must be adjust or known");
+  refuses(kInput + "-o out --poses perhaps", "--poses perhaps: must be one of adjust, known");
   refuses(kInput + "-o out --poses known --scale-from " + baseline(), "contradicts --poses known");
   refuses(kInput + "-o out --refine tilt", "'tilt' is not one of normal, distance");
   refuses(kInput + "-o out --scale-from 3", "must begin with images:, points: or positions:");
