@@ -4,7 +4,6 @@
 // other names.
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -17,18 +16,6 @@ using SettingNames = std::string (*)(std::string_view setting);
 // Returns `setting` itself.
 inline std::string own_name(std::string_view setting) {
   return std::string(setting);
-}
-
-// An entry of the table of name_in(): messages call `setting` by `name`.
-struct SettingName {
-  std::string_view setting, name;
-};
-
-// Returns the name of `setting` in `table`, or `setting` itself if the table does not contain it.
-inline std::string name_in(std::span<const SettingName> table, std::string_view setting) {
-  for (const SettingName& entry : table)
-    if (entry.setting == setting) return std::string(entry.name);
-  return own_name(setting);
 }
 
 }  // namespace axial
