@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/fraction.h"
 #include "base/log.h"
+#include "base/option_values.h"
 #include "base/output_name.h"
 #include "base/unused_input.h"
 #include "base/version.h"
@@ -119,7 +120,6 @@ void declare_fusion(OptionList& list, Raw& raw, Settings& settings) {
           "fusion-mode", &raw.fusion_mode,
           "0 depth maps and fusion, 1 depth maps only, -1 fusion of the existing depth maps in the "
           "working folder, also of other programs, without writing depth maps")
-      .range(-2, 1)
       .sets("make_maps false", " -1")
       .add_with_default("number-views-fuse", &settings.fusion.min_views,
                         "views that must agree on a point (below 2: merge without agreement); by "
@@ -202,10 +202,11 @@ void declare_camera(OptionList& list, Raw& raw, Settings& settings) {
                   "published virtual homography");
 }
 
-// Refuses values that are in the range of their option but have no meaning.
+// The rules that need more than a range.
 void check_values(const Raw& raw) {
   if (raw.fusion_mode == -2)
     fail("--fusion-mode -2: disparity maps are not built; -1 fuses existing depth maps");
+  check_range("fusion-mode", raw.fusion_mode, -1, 1);
   if (const double value = raw.estimate_roi; value != 1.1 && value != std::floor(value))
     fail("--estimate-roi {}: must be 0, 1 or 2; 1.1, the default of OpenMVS 2.4, means 2", value);
 }
