@@ -84,7 +84,7 @@ template <class T>
 void make_absolute(const Option&, const CommonOptions&, T&) {}  // other types are no paths
 
 template <class T>
-bool is_empty(const T& value) {
+bool is_missing(const T& value) {
   if constexpr (requires { value.empty(); }) return value.empty();
   return false;
 }
@@ -92,7 +92,7 @@ bool is_empty(const T& value) {
 void take_value(const Option& option, const ParsedOptions& parsed, bool is_given) {
   std::visit(
       [&](auto* target) {
-        if (option.required && (!is_given || is_empty(*target)))
+        if (option.required && (!is_given || is_missing(*target)))
           fail("--{} is missing{}{}", option.long_name(), option.required->empty() ? "" : ": ",
                *option.required);
         if (!is_given) return;
