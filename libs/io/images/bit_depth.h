@@ -14,8 +14,8 @@ namespace axial::io {
 
 // Adds the option `--bit-depth` to `list`. Its value is stored in `bit_depth`, which must exist
 // until parse_options() has returned. The default is the present value of `bit_depth`. 0 means: as
-// many bits as the largest value in all photographs needs (common_bit_depth). parse_options() refuses
-// a value that is neither 0 nor from 8 to 16 (both ends included).
+// many bits as the largest value in all photographs needs (common_bit_depth). parse_options()
+// refuses a value that is neither 0 nor from 8 to 16 (both ends included).
 void declare_bit_depth(OptionList& list, int& bit_depth);
 
 // Returns the number of bits (8 to 16) that the values of 16-bit photographs use. in_8_bits needs
