@@ -286,7 +286,7 @@ void convert(const Raw& raw, Options& options) {
   settings.fusion.two_if_undisputed = !given(options.parsed, "number-views-fuse");
   settings.pictures = pictures_of(common.verbosity);
   settings.max_threads = common.max_threads;
-  settings.survey.files.name_of = option_of;
+  settings.survey.files.name_of = options.parsed.option_of;
   take_tiles(raw.tile, options);
 }
 

@@ -146,7 +146,7 @@ void set_masks(const Values& values, Options& options) {
   options.masks.masks = values.mask_path;
   options.masks.label = values.mask_label;
   options.masks.output = in_working_folder(common, values.output);
-  options.masks.name_of = option_of;
+  options.masks.name_of = options.parsed.option_of;
   if (!fs::is_directory(options.masks.images, error))
     fail("--input-file {}: must be the folder of the photographs, because --mask-path is given",
          values.input);

@@ -81,12 +81,12 @@ void convert(const Raw& raw, Options& options) {
   Settings& settings = options.settings;
   // The square of a tiny noise is 0, and the expected errors would be NaN.
   if (settings.image_noise > 0) check_range("image-noise", settings.image_noise, 1e-6, 1000);
-  settings.survey.files = io::scene_files(raw.scene, raw.input, options.parsed.common);
+  settings.survey.files = io::scene_files(raw.scene, raw.input, options.parsed);
   const fs::path& scene = settings.survey.files.scene;
   if (settings.mesh.empty()) settings.mesh = io::cloud_beside(scene);
   settings.output =
       output_or(settings.output, without_known_extension(scene) += "_map", "--output-file");
-  settings.up = map::parse_up(raw.up, settings.epsg, option_of);
+  settings.up = map::parse_up(raw.up, settings.epsg, options.parsed.option_of);
   take_photographs(options, raw, settings.survey);
 }
 

@@ -94,9 +94,10 @@ void declare_cleaning(OptionList& list, Options& options) {
 }
 
 void take_paths(const Raw& raw, Options& options) {
-  options.survey.files = io::scene_files(raw.scene, raw.input, options.parsed.common);
-  options.output = io::mesh_file({options.survey.files.scene, options.output, raw.export_type,
-                                  given(options.parsed, "export-type"), "_mesh", option_of});
+  options.survey.files = io::scene_files(raw.scene, raw.input, options.parsed);
+  options.output =
+      io::mesh_file({options.survey.files.scene, options.output, raw.export_type,
+                     given(options.parsed, "export-type"), "_mesh", options.parsed.option_of});
   refuse_control_characters(options.output, "--output-file");
 }
 
@@ -158,7 +159,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   options.reconstruct.clean.cut_off = options.reconstruct.clean.spurious;
   take_paths(raw, options);
   take_tiles(raw, options);
-  options.reconstruct.name_of = option_of;
+  options.reconstruct.name_of = options.parsed.option_of;
   warn_of_no_effect(options);
   return options;
 }

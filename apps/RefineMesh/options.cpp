@@ -92,13 +92,14 @@ void declare_without_effect(OptionList& list) {
 
 void take_paths(const Raw& raw, Options& options) {
   survey::Options& survey = options.survey;
-  survey.files = io::scene_files(raw.cameras, raw.input, options.parsed.common);
+  survey.files = io::scene_files(raw.cameras, raw.input, options.parsed);
   if (!survey.mask_folder.empty() && !given(options.parsed, "ignore-mask-label"))
     survey.ignore_mask_label = 0;
   survey.compares_photographs = true;
   if (options.mesh.empty()) options.mesh = io::cloud_beside(survey.files.scene);
-  options.output = io::mesh_file({survey.files.scene, options.output, raw.export_type,
-                                  given(options.parsed, "export-type"), "_refine", option_of});
+  options.output =
+      io::mesh_file({survey.files.scene, options.output, raw.export_type,
+                     given(options.parsed, "export-type"), "_refine", options.parsed.option_of});
   refuse_control_characters(options.output, "--output-file");
 }
 
@@ -110,7 +111,7 @@ void convert(const Raw& raw, Options& options) {
   options.cleaning.spikes = false;
   options.refine.references = static_cast<refine::References>(raw.alternate_pair);
   options.refine.smoothness *= raw.regularity_weight / Raw{}.regularity_weight;
-  options.refine.name_of = option_of;
+  options.refine.name_of = options.parsed.option_of;
 }
 
 }  // namespace

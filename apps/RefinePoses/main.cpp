@@ -176,7 +176,8 @@ LocalFrame set_known(Options& options, const pose::Bundle& bundle, const LocalFr
       add_known(options.scale_from, options.scale_sigma, options.parsed.common.working_folder,
                 bundle, adjust, unused);
   adjust.poses_known = options.poses == "known";
-  pose::set_estimated_numbers(options.refine_list, options.sigmas, bundle, adjust, option_of);
+  pose::set_estimated_numbers(options.refine_list, options.sigmas, bundle, adjust,
+                              options.parsed.option_of);
   options.refine.keep_stated = options.refine_list == "auto";
   return adjust.positions.empty() ? frame_of_model : enter_local_frame(adjust.positions);
 }
@@ -302,7 +303,7 @@ void write(const Options& options, const pose::ColmapBundle& refined, const Inpu
     log_warning("{}", pose::warning_of(*freed,
                                        results.scale_lost ? std::numeric_limits<double>::infinity()
                                                           : known.scale_sigma,
-                                       option_of));
+                                       options.parsed.option_of));
 }
 
 Input read_input(const Options& options) {
@@ -469,7 +470,7 @@ Registered register_left_out(const Options& options, Input& input) {
       bundle = load(options, input.model, input.lenses, usual_housing(pose::PortKind::dome)).bundle;
   }
   pose::set_estimated_numbers(options.refine_list, options.sigmas, bundle, refining.adjust,
-                              option_of);
+                              options.parsed.option_of);
   log_info("{}: seeks poses of {} photographs without a pose among {} with poses",
            options.database.string(), input.model.images.size() - input.left_out->first,
            input.left_out->first);

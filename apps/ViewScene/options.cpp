@@ -86,7 +86,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   if (!options.parsed.run) return options;
   options.survey.has_memory_limit = options.survey.has_masks = false;
   options.survey.compares_photographs = true;
-  options.survey.files = io::scene_files(raw.scene, raw.input, options.parsed.common);
+  options.survey.files = io::scene_files(raw.scene, raw.input, options.parsed);
   if (options.cloud.empty()) options.cloud = cloud_beside(options);
   if (options.cloud.empty() && !options.truth.empty())
     fail("--truth {}: its distances are those of a cloud (-p), but only a mesh is shown",

@@ -313,21 +313,9 @@ void print_help(const ProgramOptions& program) {
   std::cout << program.name << ": " << program.description << "\n\n" << shown << std::flush;
 }
 
-}  // namespace
-
-namespace {
-
-using NamesOfSettings = std::map<std::string, std::string, std::less<>>;
-
-// The words for settings in messages, by the table of the options that were parsed last.
-NamesOfSettings& names_of_settings() {
-  static NamesOfSettings names;
-  return names;
-}
-
-void name_settings(const ProgramOptions& program) {
-  NamesOfSettings& names = names_of_settings();
-  names = {{"working_folder", "--working-folder"}};
+// The options of the settings in the tables of the program.
+SettingNames options_of_settings(const ProgramOptions& program) {
+  std::map<std::string, std::string, std::less<>> names{{"working_folder", "--working-folder"}};
   for (const OptionList* list : {&program.visible, &program.hidden})
     for (const Option& option : list->options()) {
       std::string field = option.long_name();
@@ -336,14 +324,13 @@ void name_settings(const ProgramOptions& program) {
       for (const OptionSetting& setting : option.settings)
         names[setting.name] = "--" + option.long_name() + setting.value;
     }
+  return [names = std::move(names)](std::string_view setting) {
+    const auto found = names.find(setting);
+    return found == names.end() ? std::string(setting) : found->second;
+  };
 }
 
 }  // namespace
-
-std::string option_of(std::string_view setting) {
-  const auto found = names_of_settings().find(setting);
-  return found == names_of_settings().end() ? std::string(setting) : found->second;
-}
 
 bool given(const ParsedOptions& parsed, const std::string& name) {
   return parsed.given.contains(name);
@@ -391,7 +378,7 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
     fail("command line: {}", as_message(error.what()));
   }
   apply(parsed.common);
-  name_settings(program);
+  parsed.option_of = options_of_settings(program);
   take_values(std::array{&program.visible, &program.hidden}, parsed);
   parsed.run = true;
   return parsed;

@@ -7,9 +7,9 @@
 #include <functional>
 #include <set>
 #include <string>
-#include <string_view>
 
 #include "base/option_list.h"
+#include "base/setting_names.h"
 
 namespace axial {
 
@@ -47,7 +47,11 @@ struct ProgramOptions {
 struct ParsedOptions {
   CommonOptions common;
   std::set<std::string> given;  // long names of the options on the command line or in the cfg file
-  bool run = false;             // false: the program must do nothing more and exit with exit_code
+  // Returns the option that sets a setting of a library ("--mask-path" for "mask_folder"), or the
+  // setting itself if no option does. A setting is a field, or a field with a value (OptionSetting
+  // in base/option_list.h).
+  SettingNames option_of = own_name;
+  bool run = false;  // false: the program must do nothing more and exit with exit_code
   int exit_code = 0;
 };
 
@@ -72,11 +76,6 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
 // True if the user gave the option with the long name `name` on the command line or in the cfg
 // file.
 bool given(const ParsedOptions& parsed, const std::string& name);
-
-// The words by which messages call a setting of a library: the option that sets it, by the table
-// that parse_options() used last ("--mask-path" for "mask_folder"), or `setting` itself if no
-// option does. `setting`: a field, or a field with a value (OptionSetting in base/option_list.h).
-std::string option_of(std::string_view setting);
 
 // Returns `path` as an absolute path. A relative `path` starts at the working folder. An empty path
 // stays empty.

@@ -4,6 +4,7 @@
 // other names.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -11,7 +12,7 @@ namespace axial {
 
 // A function that returns the words by which a message calls `setting`. `setting` is the name of a
 // field or of a parameter ("max_memory"), or this name with a value ("make_maps false").
-using SettingNames = std::string (*)(std::string_view setting);
+using SettingNames = std::function<std::string(std::string_view setting)>;
 
 // Returns `setting` itself.
 inline std::string own_name(std::string_view setting) {

@@ -147,12 +147,12 @@ TEST(OptionValues, OptionsWithoutEffectAreNamedInOneWarning) {
 
 TEST(OptionValues, SettingsAreNamedByTheirOptions) {
   Values values;
-  parse(values, {"--scene", "/a.mvs"});
-  EXPECT_EQ(option_of("max_views"), "--max-views");
-  EXPECT_EQ(option_of("views"), "--max-views");
-  EXPECT_EQ(option_of("mode is slow"), "--mode slow");
-  EXPECT_EQ(option_of("working_folder"), "--working-folder");
-  EXPECT_EQ(option_of("no_option"), "no_option");
+  const ParsedOptions parsed = parse(values, {"--scene", "/a.mvs"});
+  EXPECT_EQ(parsed.option_of("max_views"), "--max-views");
+  EXPECT_EQ(parsed.option_of("views"), "--max-views");
+  EXPECT_EQ(parsed.option_of("mode is slow"), "--mode slow");
+  EXPECT_EQ(parsed.option_of("working_folder"), "--working-folder");
+  EXPECT_EQ(parsed.option_of("no_option"), "no_option");
 }
 
 }  // namespace

@@ -33,11 +33,12 @@ void declare_scene_options(OptionList& list, SceneOptions& options) {
 }
 
 SceneFiles scene_files(const SceneOptions& options, const std::string& input,
-                       const CommonOptions& common) {
+                       const ParsedOptions& parsed) {
+  const CommonOptions& common = parsed.common;
   SceneFiles files{in_working_folder(common, input), common.working_folder,
                    in_working_folder(common, options.housing), port_choice(options)};
   files.allow_missing = options.allow_missing;
-  files.name_of = option_of;
+  files.name_of = parsed.option_of;
   return files;
 }
 
