@@ -9,7 +9,7 @@
 
 #include "scene/mesh.h"
 
-namespace axial::evaluate {
+namespace axial::geometry {
 
 // Returns `count` random points on the mesh, uniform by area. The faces, in their order, are
 // divided into `count` parts of equal area, and each part gets one random point. The same seed
@@ -24,4 +24,4 @@ std::vector<Eigen::Vector3f> sample_surface(const Mesh& mesh, std::size_t count,
 std::vector<Eigen::Vector3f> subsample(std::span<const Eigen::Vector3f> points, std::size_t count,
                                        std::uint64_t seed);
 
-}  // namespace axial::evaluate
+}  // namespace axial::geometry

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evaluate/volume.h"
+#include "geometry/volume.h"
 
 #include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "evaluate/shapes.h"
 
-namespace axial::evaluate {
+namespace axial::geometry {
 namespace {
+
+using namespace evaluate;  // shapes
 
 constexpr double kPi = std::numbers::pi;
 
@@ -52,4 +54,4 @@ TEST(Volume, NoGroundAcrossTheUpAxis) {
 }
 
 }  // namespace
-}  // namespace axial::evaluate
+}  // namespace axial::geometry

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evaluate/icp.h"
+#include "geometry/icp.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,10 +8,9 @@
 #include "base/error.h"
 #include "base/order_statistics.h"
 #include "base/parallel.h"
-#include "evaluate/sampling.h"
-#include "scene/decompositions.h"
+#include "geometry/sampling.h"
 
-namespace axial::evaluate {
+namespace axial::geometry {
 namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
@@ -23,14 +22,14 @@ struct Pair {
   double distance;
 };
 
-std::vector<Pair> find_pairs(std::span<const Eigen::Vector3f> points,
-                             const geometry::Surface& surface, const Similarity& transform) {
+std::vector<Pair> find_pairs(std::span<const Eigen::Vector3f> points, const Surface& surface,
+                             const Similarity& transform) {
   std::vector<Pair> pairs(points.size());
   parallel_for(
       points.size(),
       [&](std::size_t i) {
         const Eigen::Vector3d x = transform(points[i].cast<double>());
-        const geometry::ClosestPoint closest = surface.closest(x);
+        const ClosestPoint closest = surface.closest(x);
         // On the surface itself the sign of the gradient is undefined. Either sign holds the point
         // in the plane.
         const Eigen::Vector3d normal = closest.distance > 1e-12
@@ -88,7 +87,7 @@ Vector6d solve_step(const std::vector<Pair>& pairs, const Eigen::Vector3d& centr
 
 }  // namespace
 
-IcpResult refine_rigid(std::span<const Eigen::Vector3f> points, const geometry::Surface& surface,
+IcpResult refine_rigid(std::span<const Eigen::Vector3f> points, const Surface& surface,
                        const IcpOptions& options) {
   if (points.size() < 6)
     fail("{} points are too few to align a cloud, at least 6 are needed", points.size());
@@ -118,4 +117,4 @@ IcpResult refine_rigid(std::span<const Eigen::Vector3f> points, const geometry::
   return result;
 }
 
-}  // namespace axial::evaluate
+}  // namespace axial::geometry

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evaluate/sampling.h"
+#include "geometry/sampling.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "geometry/faces.h"
 
-namespace axial::evaluate {
+namespace axial::geometry {
 namespace {
 
 // The k-th random number in [0, 1) of item i.
@@ -25,10 +25,7 @@ std::vector<double> cumulative_area(const Mesh& mesh) {
       if (corner >= mesh.vertices.size())
         fail("face {} of the mesh refers to vertex {}, but there are {}", i, corner,
              mesh.vertices.size());
-    const Eigen::Vector3d a = mesh.vertices[mesh.faces[i][0]].cast<double>();
-    const Eigen::Vector3d e1 = mesh.vertices[mesh.faces[i][1]].cast<double>() - a;
-    const Eigen::Vector3d e2 = mesh.vertices[mesh.faces[i][2]].cast<double>() - a;
-    sum += e1.cross(e2).norm() / 2;
+    sum += area_vector(mesh, i).norm() / 2;
     sums[i] = sum;
   }
   if (!(sum > 0) || !std::isfinite(sum)) fail("the mesh has no area to sample");
@@ -49,10 +46,7 @@ std::vector<Eigen::Vector3f> sample_surface(const Mesh& mesh, std::size_t count,
     const std::size_t face =
         std::min(static_cast<std::size_t>(found - sums.begin()), sums.size() - 1);
     if (faces) (*faces)[i] = static_cast<std::uint32_t>(face);
-    const auto& corners = mesh.faces[face];
-    const Eigen::Vector3d a = mesh.vertices[corners[0]].cast<double>();
-    const Eigen::Vector3d b = mesh.vertices[corners[1]].cast<double>();
-    const Eigen::Vector3d c = mesh.vertices[corners[2]].cast<double>();
+    const auto [a, b, c] = corners_of(mesh, face);
     const double root = std::sqrt(random_unit(seed, i, 1));
     const double v = random_unit(seed, i, 2);
     samples[i] = ((1 - root) * a + root * (1 - v) * b + root * v * c).cast<float>();
@@ -72,4 +66,4 @@ std::vector<Eigen::Vector3f> subsample(std::span<const Eigen::Vector3f> points, 
   return chosen;
 }
 
-}  // namespace axial::evaluate
+}  // namespace axial::geometry

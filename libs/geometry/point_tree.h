@@ -8,7 +8,7 @@
 #include <nanoflann.hpp>
 #include <span>
 
-namespace axial::mesh {
+namespace axial::geometry {
 
 // The form in which nanoflann reads points. `points` must outlive the tree.
 struct PointSet {
@@ -23,8 +23,10 @@ struct PointSet {
   }
 };
 
-// Finds points by their indices.
-using PointTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, PointSet>,
-                                                      PointSet, 3, std::uint32_t>;
+// Finds points by their indices. `Distance`: the type in which squared distances are summed.
+template <class Distance = float>
+using PointTree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, PointSet, Distance>,
+                                        PointSet, 3, std::uint32_t>;
 
-}  // namespace axial::mesh
+}  // namespace axial::geometry

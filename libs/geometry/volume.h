@@ -7,7 +7,7 @@
 
 #include "scene/mesh.h"
 
-namespace axial::evaluate {
+namespace axial::geometry {
 
 // The points x with normal.dot(x) == offset. Above the plane, normal.dot(x) is larger.
 struct Plane {
@@ -49,4 +49,4 @@ double volume_above(const Mesh& mesh, const Plane& plane);
 // faces. Precondition: the vertices of the faces exist.
 double enclosed_volume(const Mesh& mesh);
 
-}  // namespace axial::evaluate
+}  // namespace axial::geometry

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <span>
 
-#include "evaluate/alignment.h"
 #include "geometry/surface.h"
+#include "scene/decompositions.h"
 
-namespace axial::evaluate {
+namespace axial::geometry {
 
 struct IcpOptions {
   std::size_t samples = 20000;  // number of used points; all points if the cloud has fewer
@@ -41,7 +41,7 @@ struct IcpResult {
 // to the point. The cloud does not move in directions that the surface does not constrain, such as
 // sliding on a plane. Error if there are fewer than 6 points, if the used points coincide, or if
 // one of them is not finite.
-IcpResult refine_rigid(std::span<const Eigen::Vector3f> points, const geometry::Surface& surface,
+IcpResult refine_rigid(std::span<const Eigen::Vector3f> points, const Surface& surface,
                        const IcpOptions& options = {});
 
-}  // namespace axial::evaluate
+}  // namespace axial::geometry

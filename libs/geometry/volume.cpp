@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evaluate/volume.h"
+#include "geometry/volume.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -10,10 +10,11 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "evaluate/sampling.h"
+#include "geometry/faces.h"
+#include "geometry/sampling.h"
 #include "scene/decompositions.h"
 
-namespace axial::evaluate {
+namespace axial::geometry {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
@@ -66,12 +67,9 @@ Plane fitted(const Points& samples, const Plane& plane, double threshold) {
 }
 
 double diagonal(const Mesh& mesh) {
-  Eigen::Vector3f least = mesh.vertices.front(), most = least;
-  for (const Eigen::Vector3f& x : mesh.vertices) {
-    least = least.cwiseMin(x);
-    most = most.cwiseMax(x);
-  }
-  return static_cast<double>((most - least).norm());
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& x : mesh.vertices) box.extend(x);
+  return static_cast<double>(box.diagonal().norm());
 }
 
 std::optional<Plane> best_plane(const Points& samples, double threshold,
@@ -110,11 +108,6 @@ Points part_above(const Plane& plane, const std::array<Eigen::Vector3d, 3>& corn
   return part;
 }
 
-std::array<Eigen::Vector3d, 3> corners_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& f) {
-  return {mesh.vertices[f[0]].cast<double>(), mesh.vertices[f[1]].cast<double>(),
-          mesh.vertices[f[2]].cast<double>()};
-}
-
 }  // namespace
 
 Plane ground_plane(const Mesh& mesh, const Eigen::Vector3d& above, const GroundOptions& options) {
@@ -136,8 +129,8 @@ Plane ground_plane(const Mesh& mesh, const Eigen::Vector3d& above, const GroundO
 
 double volume_above(const Mesh& mesh, const Plane& plane) {
   double sum = 0;
-  for (const auto& face : mesh.faces) {
-    const Points part = part_above(plane, corners_of(mesh, face));
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const Points part = part_above(plane, corners_of(mesh, f));
     for (std::size_t k = 2; k < part.size(); ++k)
       sum += six_volumes(plane, part[0], part[k - 1], part[k]);
   }
@@ -150,11 +143,11 @@ double enclosed_volume(const Mesh& mesh) {
   Plane plane;
   plane.offset = plane.normal.dot(mesh.vertices.front().cast<double>());
   double sum = 0;
-  for (const auto& face : mesh.faces) {
-    const auto [a, b, c] = corners_of(mesh, face);
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto [a, b, c] = corners_of(mesh, f);
     sum += six_volumes(plane, a, b, c);
   }
   return sum / 6;
 }
 
-}  // namespace axial::evaluate
+}  // namespace axial::geometry
