@@ -13,7 +13,7 @@
 #include "io/cameras/geo_offset.h"
 #include "io/colmap/colmap.h"
 #include "io/colmap/colmap_scene.h"
-#include "pose/import_check.h"
+#include "diagnosis/import_check.h"
 
 namespace axial::apps {
 namespace {
@@ -68,7 +68,7 @@ int run(int argc, char** argv) {
   evaluate::apply(alignment.similarity, model);
   const io::Housing carried = io::housing_of(model.cameras);
   if (!carried.ports.empty())
-    if (const auto line = pose::import_warning(model, carried, {})) log_warning("{}", *line);
+    if (const auto line = diagnosis::import_warning(model, carried, {})) log_warning("{}", *line);
   io::leave(frame, model);
   write_folder(options.output,
                [&](const fs::path& staging) { io::write_colmap_text(staging, model); });

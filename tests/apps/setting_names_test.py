@@ -59,7 +59,7 @@ def names_asked_for(folder):
     """The settings that a library's messages name."""
     text = "\n".join(path.read_text(encoding="utf-8") for path in folder.rglob("*")
                      if path.suffix in (".h", ".cpp"))
-    return set(re.findall(r'name_of\("([^"]+)"\)', text))
+    return set(re.findall(r'name_of\("([^"]+)"\)', text)) | set(re.findall(r'"(\w+_sigma)"', text))
 
 
 class SettingNames(unittest.TestCase):
