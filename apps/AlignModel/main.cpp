@@ -9,11 +9,11 @@
 #include "base/program.h"
 #include "base/same_file.h"
 #include "base/version.h"
+#include "diagnosis/import_check.h"
 #include "evaluate/alignment.h"
 #include "io/cameras/geo_offset.h"
 #include "io/colmap/colmap.h"
 #include "io/colmap/colmap_scene.h"
-#include "diagnosis/import_check.h"
 
 namespace axial::apps {
 namespace {

@@ -10,6 +10,7 @@
 #include "base/progress.h"
 #include "base/same_file.h"
 #include "base/unused_input.h"
+#include "diagnosis/import_check.h"
 #include "io/bytes/json.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/housing.h"
@@ -22,7 +23,6 @@
 #include "io/openmvs/point_source.h"
 #include "options.h"
 #include "pose/colmap_bundle.h"
-#include "diagnosis/import_check.h"
 
 namespace axial::apps {
 namespace {

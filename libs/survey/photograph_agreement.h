@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "scene/sparse_places.h"
 #include "scene/scene.h"
+#include "scene/sparse_places.h"
 
 namespace axial::survey {
 
