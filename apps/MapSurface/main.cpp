@@ -148,7 +148,7 @@ void require_resolved(const map::MapGrid& grid, const survey::Survey& survey) {
         "the map would have {} x {} pixels of {:.4g} m, and all photographs together have {:.0f} "
         "times fewer: remove parts of the mesh that lie far away, or give a larger {}",
         grid.columns, grid.rows, grid.pixel, static_cast<double>(grid.pixels()) / pixels,
-        settings.survey.files.name_of("ground_sample_distance"));
+        survey.options.files.name_of("ground_sample_distance"));
 }
 
 double pixel_of(const Settings& settings, const Mesh& mesh, const survey::Survey& survey) {
