@@ -114,7 +114,7 @@ class OptionList {
     add_with_default(name, word.get(), help);
     for (const auto& [text, meaning] : choices) {
       if (meaning == *target) *word = text;
-      options_.back().choices.push_back({text, [target, meaning] { *target = meaning; }});
+      options_.back().choices.push_back({text, [target, value = meaning] { *target = value; }});
     }
     options_.back().storage = std::move(word);
     return *this;
