@@ -109,14 +109,4 @@ Vector2<T> apply_homography(const Matrix3<T>& H, const Vector2<T>& pixel) {
   return {image.x() / image.z(), image.y() / image.z()};
 }
 
-// Let X be the point at `distance` [m] on `source_ray` [frame of the real source camera]. Returns
-// the pixel at which the virtual camera `reference` images X. The consistency check compares this
-// pixel with the reference pixel (eq. 7, corrected: docs/refraction.md). R, C: x_source = R
-// (x_reference - C), in the frames of the real cameras.
-template <class T>
-Vector2<T> virtual_reprojection(const VirtualCamera<T>& reference, const AxialRay<T>& source_ray,
-                                const T& distance, const Matrix3<T>& R, const Vector3<T>& C) {
-  return reference.pixel(R.transpose() * source_ray.at(distance) + C);
-}
-
 }  // namespace axial::refractive

@@ -6,15 +6,14 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "base/output_name.h"
 #include "base/program.h"
 #include "base/same_file.h"
 #include "base/version.h"
+#include "diagnosis/import_check.h"
 #include "evaluate/alignment.h"
 #include "io/cameras/geo_offset.h"
 #include "io/colmap/colmap.h"
 #include "io/colmap/colmap_scene.h"
-#include "pose/import_check.h"
 
 namespace axial::apps {
 namespace {
@@ -27,24 +26,20 @@ struct Options {
 };
 
 Options parse_command_line(int argc, const char* const* argv) {
-  std::string input, reference, output;
+  Options options;
   ProgramOptions program{"AlignModel",
                          "aligns a COLMAP model to known camera centres in metres, by a similarity",
                          {},
                          {}};
   program.version = version_line(program.name);
-  program.visible.add("input-file,i", &input, "COLMAP model folder to align")
-      .add("reference", &reference,
+  program.visible.add("input-file,i", &options.model, "COLMAP model folder to align")
+      .add("reference", &options.reference,
            "COLMAP model folder with the known camera centres; images are matched by name")
-      .add("output-folder,o", &output, "folder for the aligned model (COLMAP text)");
-  Options options;
+      .required("the model with the known camera centres")
+      .add("output-folder,o", &options.output, "folder for the aligned model (COLMAP text)")
+      .output_folder()
+      .required("");
   options.parsed = parse_options(argc, argv, program);
-  if (!options.parsed.run) return options;
-  if (reference.empty()) fail("--reference is missing: the model with the known camera centres");
-  if (output.empty()) fail("--output-folder is missing");
-  options.model = in_working_folder(options.parsed.common, input);
-  options.reference = in_working_folder(options.parsed.common, reference);
-  options.output = folder_in_working_folder(options.parsed.common, output, "--output-folder");
   return options;
 }
 
@@ -73,7 +68,7 @@ int run(int argc, char** argv) {
   evaluate::apply(alignment.similarity, model);
   const io::Housing carried = io::housing_of(model.cameras);
   if (!carried.ports.empty())
-    if (const auto line = pose::import_warning(model, carried, {})) log_warning("{}", *line);
+    if (const auto line = diagnosis::import_warning(model, carried, {})) log_warning("{}", *line);
   io::leave(frame, model);
   write_folder(options.output,
                [&](const fs::path& staging) { io::write_colmap_text(staging, model); });

@@ -80,7 +80,8 @@ void set_unknown(Options& options, const refractive::Port<double>& port) {
   camera.cameras[0].measured.port = port;
   pose::AdjustOptions& adjust = options.calibrate.adjust;
   adjust.points_known = true;
-  pose::set_free_numbers(options.refine_list, options.sigmas, camera, adjust, option_of);
+  pose::set_free_numbers(options.refine_list, options.sigmas, camera, adjust,
+                         options.parsed.option_of);
   check_limits(options, port);
   if (adjust.free[pose::kFocalNumber])
     fail("--refine {}: the focal length cannot be refined, it stays as calibrated in air",
@@ -167,7 +168,7 @@ int run(int argc, char** argv) {
   const std::vector<fs::path> photographs = calibrate::photographs_in(options.input);
   check_outputs(options, photographs);
   const auto views = calibrate::find_views(photographs, options.board, lens, options.bit_depth,
-                                           option_of("bit_depth"));
+                                           options.parsed.option_of("bit_depth"));
   const auto calibration = calibrate::calibrate(
       lens, port, views, calibrate::corners_of(options.board), options.calibrate);
   const std::vector<std::string> lines = report_lines(calibration, port_name);

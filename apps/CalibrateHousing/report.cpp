@@ -34,8 +34,8 @@ std::vector<Photograph> photographs_of(const Calibration& calibration) {
   return rows;
 }
 
-std::vector<pose::FreeValue> values_of(const Calibration& calibration) {
-  return pose::free_values(calibration.camera(), calibration.uncertainty.camera_sigmas[0],
+std::vector<pose::HousingNumber> values_of(const Calibration& calibration) {
+  return pose::free_values(calibration.bundle.bundle, calibration.uncertainty.camera_sigmas,
                            calibration.adjust);
 }
 
@@ -64,7 +64,7 @@ std::vector<std::string> report_lines(const Calibration& calibration,
   if (const std::size_t pieces = calibration.pieces(); pieces > 0)
     lines.push_back(fmt::format("{} photographs show the whole board, {} a piece of the board",
                                 calibration.views.size() - pieces, pieces));
-  for (const pose::FreeValue& value : values_of(calibration))
+  for (const pose::HousingNumber& value : values_of(calibration))
     lines.push_back(fmt::format("Port {}: {} {:.6g} +- {:.2g} {}", port_name, value.name, value.now,
                                 value.sigma, value.unit));
   return lines;
@@ -75,7 +75,7 @@ std::string report_json(const Calibration& calibration, const calibrate::Limits&
             {"pixel_sigma", calibration.uncertainty.pixel_sigma},
             {"converged", calibration.last.converged}};
   json["free"] = Json::array();
-  for (const pose::FreeValue& value : values_of(calibration))
+  for (const pose::HousingNumber& value : values_of(calibration))
     json["free"].push_back({{"name", value.name},
                             {"unit", value.unit},
                             {"value", value.now},

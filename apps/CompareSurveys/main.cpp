@@ -252,7 +252,7 @@ int run(int argc, char** argv) {
   const ThreadLimit limit(options.parsed.common.max_threads);
   compare::ChangeFacts facts{settings.before.filename().string(),
                              settings.after.filename().string()};
-  if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg, option_of);
+  if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg, settings.compare.name_of);
   const OutputLock lock = lock_output(change_files(settings).difference);
   const LocalFrame frame = frame_of_survey(settings, settings.before, settings.scene_before);
   facts.mesh_frame = frame;

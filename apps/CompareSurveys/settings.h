@@ -32,7 +32,4 @@ struct Options {
 // of range.
 Options parse_command_line(int argc, const char* const* argv);
 
-// The name by which messages call a setting of a library: the name of the option.
-std::string option_of(std::string_view setting);
-
 }  // namespace axial::apps

@@ -25,8 +25,6 @@ void require_fusion(const std::string& option, const Settings& settings) {
 
 void take_tiles(const std::string& tile, Options& options) {
   Settings& settings = options.settings;
-  if (settings.fusion_tiles < 1 || settings.fusion_tiles > densify::kMostTiles)
-    fail("--fusion-tiles {}: must be from 1 to {}", settings.fusion_tiles, densify::kMostTiles);
   if (settings.fusion_tiles > 1)
     require_fusion(fmt::format("--fusion-tiles {}", settings.fusion_tiles), settings);
   if (!given(options.parsed, "tile")) return;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "without_effect.h"
 
-#include <algorithm>
 #include <initializer_list>
 #include <string>
 
-#include "base/log.h"
+#include "base/option_values.h"
 
 namespace axial::apps {
 namespace {
@@ -23,17 +22,8 @@ constexpr Names kImages{"resolution-level", "max-resolution",     "min-resolutio
                         "mask-path",        "ignore-mask-label",  "bit-depth",      "estimate-roi",
                         "roi-border",       "view-neighbors-file"};
 
-// The options of `names` that were given, as "--a, --b".
-std::string given_of(const Options& options, Names names) {
-  std::string listed;
-  for (const char* name : names)
-    if (given(options.parsed, name)) listed += (listed.empty() ? "--" : ", --") + std::string(name);
-  return listed;
-}
-
 void warn_of(const Options& options, Names names, const std::string& cause) {
-  if (const std::string listed = given_of(options, names); !listed.empty())
-    log_warning("{}: without effect {}", listed, cause);
+  warn_without_effect(options.parsed, names, cause);
 }
 
 // If several exports are asked for, the first one is made.

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "evaluate/parts_report.h"
+#include "evaluate/report.h"
 #include "io/ply/ply_property.h"
 
 namespace axial::apps {

@@ -9,13 +9,12 @@
 #include "cloud_parts.h"
 #include "evaluate/alignment.h"
 #include "evaluate/cloud_evaluation.h"
-#include "evaluate/icp.h"
 #include "evaluate/mesh_evaluation.h"
-#include "evaluate/mesh_report.h"
 #include "evaluate/pictures.h"
 #include "evaluate/report.h"
-#include "evaluate/sampling.h"
 #include "evaluate/strip.h"
+#include "geometry/icp.h"
+#include "geometry/sampling.h"
 #include "inputs.h"
 #include "io/images/image.h"
 #include "io/ply/ply.h"
@@ -46,12 +45,12 @@ Similarity align_by_centres(const Options& options, const Models& models,
 
 Similarity align_by_icp(const Options& options, const Input& input,
                         const geometry::Surface& surface, nlohmann::ordered_json& report) {
-  evaluate::IcpOptions settings;
+  geometry::IcpOptions settings;
   settings.seed = options.seed;
   const auto result = naming(options.input, [&] {
-    if (!input.mesh) return evaluate::refine_rigid(input.positions(), surface, settings);
-    return evaluate::refine_rigid(
-        evaluate::sample_surface(*input.mesh, settings.samples, settings.seed), surface, settings);
+    if (!input.mesh) return geometry::refine_rigid(input.positions(), surface, settings);
+    return geometry::refine_rigid(
+        geometry::sample_surface(*input.mesh, settings.samples, settings.seed), surface, settings);
   });
   log_info("Aligned by ICP in {} steps{}: median distance {:.3f} mm before, {:.3f} mm after",
            result.iterations, result.converged ? "" : " (not converged)",
@@ -238,7 +237,7 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   const Mesh truth = io::read_shape(options.truth, models.frames.truth);
   const geometry::Surface surface = naming(options.truth, [&] { return geometry::Surface(truth); });
   naming(options.truth,
-         [&] { evaluate::sample_surface(truth, 1, options.seed); });  // needs an area
+         [&] { geometry::sample_surface(truth, 1, options.seed); });  // needs an area
   const std::vector<evaluate::View> views = read_views(options, models);
   if (options.strip) naming(options.cameras_model, [&] { evaluate::require_strip(views); });
   require_kind(options, input);

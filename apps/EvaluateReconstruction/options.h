@@ -12,13 +12,13 @@ namespace axial::apps {
 
 struct Options {
   ParsedOptions parsed;
-  std::filesystem::path input, truth;  // no truth: the input is only rendered
-  std::vector<double> tolerances;      // [m], at least one
-  std::string align = "none";          // none, centres, icp
-  bool allow_missing = false;          // no error if the housing gives no image a port
-  std::filesystem::path cameras;       // true COLMAP model; empty: none
-  std::filesystem::path housing;       // ports of `cameras`; empty: no ports
-  std::filesystem::path estimated;     // estimated COLMAP model; empty: none
+  std::filesystem::path input, truth;     // no truth: the input is only rendered
+  std::vector<double> tolerances{0.005};  // [m], at least one
+  std::string align = "none";             // none, centres, icp
+  bool allow_missing = false;             // no error if the housing gives no image a port
+  std::filesystem::path cameras;          // true COLMAP model; empty: none
+  std::filesystem::path housing;          // ports of `cameras`; empty: no ports
+  std::filesystem::path estimated;        // estimated COLMAP model; empty: none
   // The folders with the models of `cameras` and `estimated`; filled by the program.
   std::filesystem::path cameras_model, estimated_model;
   std::size_t samples = 200000;

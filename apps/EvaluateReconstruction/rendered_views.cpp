@@ -11,7 +11,7 @@
 #include "base/same_file.h"
 #include "evaluate/pictures.h"
 #include "evaluate/render_mesh.h"
-#include "evaluate/render_report.h"
+#include "evaluate/report.h"
 #include "io/images/image.h"
 #include "io/textured/textured_mesh.h"
 

@@ -7,7 +7,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "base/output_name.h"
 #include "base/parallel.h"
 #include "base/program.h"
 #include "base/same_file.h"
@@ -29,25 +28,25 @@ struct Options {
   bool png = false;
 };
 
-void declare(OptionList& list, Options& options, std::vector<std::string>& clips,
-             std::string& output, std::string& json) {
-  list.add("input-file,i", &clips, "video file; may be given several times")
-      .add("output-folder,o", &output,
+void declare(OptionList& list, Options& options) {
+  list.add("input-file,i", &options.clips, "video file; may be given several times")
+      .add("output-folder,o", &options.output,
            "folder for the photographs; those of dive.mp4 go into its subfolder dive")
-      .add("json", &json,
+      .output_folder()
+      .required("")
+      .add("json", &options.json,
            "also write names, times, sharpness and motion of the frames to this file")
+      .output_file()
       .add_with_default("motion", &options.motion,
                         "motion of the picture between chosen frames, as a share of its width")
       .add_with_default("jpeg-quality", &options.quality, "quality of the JPEG files, 1 to 100")
+      .range(1, 100)
       .add_switch("png", &options.png, "write PNG files in place of JPEG files");
 }
 
 void check(const Options& options) {
-  if (options.output.empty()) fail("--output-folder is missing");
   if (!(options.motion > 0 && options.motion <= 1))
     fail("--motion {}: must be above 0 and at most 1", options.motion);
-  if (options.quality < 1 || options.quality > 100)
-    fail("--jpeg-quality {}: must be from 1 to 100", options.quality);
   std::set<std::string> stems;
   for (const fs::path& clip : options.clips)
     if (!stems.insert(clip.stem().string()).second)
@@ -58,21 +57,15 @@ void check(const Options& options) {
 
 Options parse_command_line(int argc, const char* const* argv) {
   Options options;
-  std::vector<std::string> clips;
-  std::string output, json;
   ProgramOptions program{
       "ExtractFrames",
       "makes photographs of videos: sharp frames with enough motion between them",
       {},
       {}};
   program.version = version_line(program.name);
-  declare(program.visible, options, clips, output, json);
+  declare(program.visible, options);
   options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
-  for (const std::string& clip : clips)
-    options.clips.push_back(in_working_folder(options.parsed.common, clip));
-  options.output = folder_in_working_folder(options.parsed.common, output, "--output-folder");
-  if (!json.empty()) options.json = output_in_working_folder(options.parsed.common, json, "--json");
   check(options);
   return options;
 }

@@ -10,6 +10,7 @@
 #include "base/progress.h"
 #include "base/same_file.h"
 #include "base/unused_input.h"
+#include "diagnosis/import_check.h"
 #include "io/bytes/json.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/housing.h"
@@ -22,7 +23,6 @@
 #include "io/openmvs/point_source.h"
 #include "options.h"
 #include "pose/colmap_bundle.h"
-#include "pose/import_check.h"
 
 namespace axial::apps {
 namespace {
@@ -318,7 +318,7 @@ void write_frame(const Options& options, const LocalFrame& frame) {
 
 void warn_of_misfit(const Options& options, const Input& input) {
   const io::Housing ports = io::in_frame(input.frame, input.housing);
-  if (const auto line = pose::import_warning(input.model, ports, options.image_folder))
+  if (const auto line = diagnosis::import_warning(input.model, ports, options.image_folder))
     log_warning("{}", *line);
 }
 

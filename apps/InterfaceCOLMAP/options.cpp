@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/option_values.h"
 #include "base/output_name.h"
-#include "base/setting_names.h"
 #include "base/unused_input.h"
 #include "base/version.h"
 
@@ -17,9 +17,11 @@ namespace fs = std::filesystem;
 
 // The options before they are checked.
 struct Values {
-  std::string input, output, image_folder = "images/", housing, point_cloud, mask_path;
+  std::string input, output, image_folder = "images/";
+  fs::path housing, point_cloud, mask_path;
   int mask_label = 0;
-  bool normalize = false, force_points = false, undistort = false;
+  bool normalize = false, force_points = false;
+  std::optional<bool> undistort;
 };
 
 // The output of an export is a folder. A file name, as for an import, is a mistake.
@@ -54,6 +56,7 @@ void declare_files(OptionList& visible, Values& values) {
            "export to DIR/sparse, where DIR is -o or the scene's folder; with --mask-path, the "
            "folder of the photographs")
       .add("output-file,o", &values.output, "scene to write (default: DIR/scene.mvs)")
+      .sets("output")
       .add_with_default("image-folder", &values.image_folder,
                         "folder of the images, in the working folder or else in DIR (the default: "
                         "in DIR first); images must have the size of their cameras")
@@ -69,9 +72,11 @@ void declare_masks(OptionList& visible, Values& values) {
           "folder with a mask for every image, as for DensifyPointCloud, or one file for all: "
           "writes these masks as COLMAP wants them (ImageReader.mask_path) into the folder -o, and "
           "no scene")
+      .sets("mask_folder")
       .add_with_default("ignore-mask-label", &values.mask_label,
                         "with --mask-path: mask value of the pixels to leave out, which become "
-                        "black");
+                        "black")
+      .range(0, 65535);
 }
 
 void declare_changes(OptionList& visible, Values& values) {
@@ -89,13 +94,6 @@ void declare_changes(OptionList& visible, Values& values) {
                         "accepted and without effect: sparse points are always written");
 }
 
-std::string mask_option_of(std::string_view setting) {
-  constexpr SettingName kOptions[] = {{"ignore_mask_label", "--ignore-mask-label"},
-                                      {"mask_folder", "--mask-path"},
-                                      {"output", "--output-file"}};
-  return name_in(kOptions, setting);
-}
-
 // The options of an export: the input is a scene.
 void set_export(const Values& values, Options& options) {
   const CommonOptions& common = options.parsed.common;
@@ -109,11 +107,10 @@ void set_export(const Values& values, Options& options) {
     fail("--output-file {}: is a file, but a scene (.mvs) is exported to a folder", values.output);
   if (!values.housing.empty())
     fail("--housing {}: is not used in an export, which takes the housing file beside the scene",
-         values.housing);
-  options.point_cloud = in_working_folder(common, values.point_cloud);
-  for (const char* name : {"undistort", "normalize", "force-points"})
-    if (given(options.parsed, name))
-      log_warning("--{}: without effect when a scene is exported", name);
+         values.housing.string());
+  options.point_cloud = values.point_cloud;
+  warn_without_effect(options.parsed, {"undistort", "normalize", "force-points"},
+                      "when a scene is exported");
   if (given(options.parsed, "image-folder"))
     options.image_folder = in_working_folder(common, values.image_folder) / "";
 }
@@ -124,18 +121,20 @@ void set_import(const Values& values, Options& options) {
   options.normalize = values.normalize;
   if (!values.point_cloud.empty())
     fail("--pointcloud-file {}: is not built for an import, only for the export of a scene (.mvs)",
-         values.point_cloud);
+         values.point_cloud.string());
   if (values.force_points)
     log_warning("--force-points: without effect: sparse points are always written");
   std::error_code error;
   if (!fs::is_directory(options.colmap_folder, error))
     fail("{}: is not a folder", options.colmap_folder.string());
   options.named_output = in_working_folder(common, values.output);
-  options.scene_file = with_extension(
-      output_or(common, values.output, options.colmap_folder / "scene", "--output-file"), ".mvs");
+  options.scene_file =
+      with_extension(output_or(output_in_working_folder(common, values.output, "--output-file"),
+                               options.colmap_folder / "scene", "--output-file"),
+                     ".mvs");
   refuse_other_format(values.output, "--output-file");
-  if (given(options.parsed, "undistort")) options.undistort = values.undistort;
-  options.housing_file = in_working_folder(common, values.housing);
+  options.undistort = values.undistort;
+  options.housing_file = values.housing;
   find_image_folder(values.image_folder, options);
 }
 
@@ -144,18 +143,18 @@ void set_masks(const Values& values, Options& options) {
   const CommonOptions& common = options.parsed.common;
   std::error_code error;
   options.masks.images = options.colmap_folder;
-  options.masks.masks = in_working_folder(common, values.mask_path);
+  options.masks.masks = values.mask_path;
   options.masks.label = values.mask_label;
   options.masks.output = in_working_folder(common, values.output);
-  options.masks.name_of = mask_option_of;
+  options.masks.name_of = options.parsed.option_of;
   if (!fs::is_directory(options.masks.images, error))
     fail("--input-file {}: must be the folder of the photographs, because --mask-path is given",
          values.input);
-  if (!fs::exists(options.masks.masks, error)) fail("--mask-path {}: not found", values.mask_path);
+  if (!fs::exists(options.masks.masks, error))
+    fail("--mask-path {}: not found", values.mask_path.string());
   if (values.output.empty())
-    fail("--mask-path {}: needs --output-file, the folder for COLMAP's masks", values.mask_path);
-  if (values.mask_label < 0 || values.mask_label > 65535)
-    fail("--ignore-mask-label {}: must be from 0 to 65535", values.mask_label);
+    fail("--mask-path {}: needs --output-file, the folder for COLMAP's masks",
+         values.mask_path.string());
   for (const char* name : {"image-folder", "housing", "undistort", "pointcloud-file", "normalize"})
     if (given(options.parsed, name))
       fail("--{}: contradicts --mask-path, which writes no scene", name);

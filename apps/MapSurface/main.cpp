@@ -148,7 +148,7 @@ void require_resolved(const map::MapGrid& grid, const survey::Survey& survey) {
         "the map would have {} x {} pixels of {:.4g} m, and all photographs together have {:.0f} "
         "times fewer: remove parts of the mesh that lie far away, or give a larger {}",
         grid.columns, grid.rows, grid.pixel, static_cast<double>(grid.pixels()) / pixels,
-        option_of("ground_sample_distance"));
+        survey.options.files.name_of("ground_sample_distance"));
 }
 
 double pixel_of(const Settings& settings, const Mesh& mesh, const survey::Survey& survey) {
@@ -181,7 +181,8 @@ PlacedMap place_map(const Settings& settings, const Mesh& mesh, const survey::Su
   map.mesh_frame = frame;
   map.frame = map::frame_with_up(up, frame);
   map.is_georeferenced = has_system && map.frame.axes.isIdentity(0);
-  map.grid = map::grid_around(mesh, map.frame, pixel_of(settings, mesh, survey), option_of);
+  map.grid = map::grid_around(mesh, map.frame, pixel_of(settings, mesh, survey),
+                              settings.survey.files.name_of);
   require_resolved(map.grid, survey);
   const auto& axes = map.frame.axes;
   log_info("map of {} x {} pixels of {:.4g} m", map.grid.columns, map.grid.rows, map.grid.pixel);
@@ -246,7 +247,7 @@ FaceFacts look_at_faces(const Mesh& mesh, const Settings& settings,
   const texture::FaceViews seen = texture::find_face_views(
       mesh, survey::posed_cameras(photographs.survey()), texture::source_of(photographs), {},
       console_progress("Numbers of views"),
-      {texture::Budget(left_for_views(mesh, settings), option_of),
+      {texture::Budget(left_for_views(mesh, settings), settings.survey.files.name_of),
        photographs.bytes_to_read_color()});
   return facts_of(mesh, seen, errors);
 }
@@ -258,7 +259,7 @@ TexturedMesh textured(TexturedMesh mesh, const Settings& settings,
   texture::Options options;
   options.max_bytes = left_for_views(mesh.mesh, settings);
   options.image_bytes = photographs.bytes_to_read_color();
-  options.name_of = option_of;
+  options.name_of = settings.survey.files.name_of;
   options.take_views = [&](const Mesh& split, const texture::FaceViews& seen) {
     facts = facts_of(split, seen, errors);
   };
@@ -278,7 +279,7 @@ void write(const Settings& settings, const TexturedMesh& mesh, const FaceFacts& 
   options.mesh_frame = place.mesh_frame;
   options.contour_interval = settings.contours;
   options.memory = settings.survey.memory;
-  options.name_of = option_of;
+  options.name_of = settings.survey.files.name_of;
   const map::MapFiles files = map_files(settings);
   const map::MapReport report =
       map::write_maps(files, {mesh, facts.views, facts.errors, place.frame, place.grid}, options,
@@ -298,7 +299,8 @@ int run(int argc, char** argv) {
   share_one_heap();
   const Settings& settings = options.settings;
   const ThreadLimit limit(options.parsed.common.max_threads);
-  const std::string crs = settings.epsg > 0 ? map::crs_of_epsg(settings.epsg, option_of) : "";
+  const std::string crs =
+      settings.epsg > 0 ? map::crs_of_epsg(settings.epsg, settings.survey.files.name_of) : "";
   const OutputLock lock = lock_output(map_files(settings).heights);
   survey::Survey survey = survey::open_scene(settings.survey);
   TexturedMesh mesh = read_mesh(settings, survey.frame);

@@ -17,7 +17,7 @@ struct Settings {
   survey::Options survey;
   std::filesystem::path mesh;
   std::filesystem::path output;       // the names of the maps without ".dem.tif" and so on
-  std::optional<Eigen::Vector3d> up;  // in the world; empty: see map_frame() in main.cpp
+  std::optional<Eigen::Vector3d> up;  // in the world; empty: see place_map() in main.cpp
   double pixel = 0;                   // of the map [m]; 0: from the photographs
   int epsg = 0;                       // 0: no coordinate reference system
   bool hillshade = false;
@@ -33,8 +33,5 @@ struct Options {
 
 // Parses and checks the command line. Error for an unknown option and for a value out of range.
 Options parse_command_line(int argc, const char* const* argv);
-
-// The name by which messages call a setting of a library: the name of the option.
-std::string option_of(std::string_view setting);
 
 }  // namespace axial::apps

@@ -7,10 +7,8 @@
 
 #include "base/error.h"
 #include "base/fraction.h"
-#include "base/log.h"
-#include "base/not_built.h"
+#include "base/option_values.h"
 #include "base/output_name.h"
-#include "base/setting_names.h"
 #include "base/version.h"
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/scene_options.h"
@@ -20,43 +18,25 @@ namespace {
 
 // The values of the command line before they are checked and converted.
 struct Raw {
-  std::string input, output, cloud, mesh, export_type = "ply", tile;
+  std::string input, export_type = "ply", tile;
   io::SceneOptions scene;
 };
 
-constexpr SettingName kOptions[] = {{"max_memory", "--max-memory"},
-                                    {"merge.min_distance", "--min-point-distance"},
-                                    {"output", "--output-file"},
-                                    {"tiles", "--tiles"},
-                                    {"type", "--export-type"}};
-
-std::string option_of(std::string_view setting) {
-  return name_in(kOptions, setting);
-}
-
-std::vector<NotBuilt> not_built() {
-  return {{"cuda-device", "-1", {"-1", "-2"}}};
-}
-
-std::vector<NotBuilt> not_built_hidden() {
-  return {{"mesh-export", "0", {"0", "false", "no", "off"}},
-          {"split-max-area", "0", {"0", "0.0"}},
-          {"import-roi-file", "", {""}},
-          {"image-points-file", "", {""}}};
-}
-
 void declare_io(OptionList& list, Raw& raw, Options& options) {
   list.add("input-file,i", &raw.input, "scene with cameras (.mvs)")
-      .add("pointcloud-file,p", &raw.cloud,
+      .add("pointcloud-file,p", &options.cloud,
            "dense cloud with views (<input>.ply, or the scene's points if there is no such file)")
-      .add("output-file,o", &raw.output, "mesh to write (<input>_mesh.ply)")
+      .add("output-file,o", &options.output, "mesh to write (<input>_mesh.ply)")
+      .output_file()
+      .sets("output")
       .add_with_default("export-type", &raw.export_type,
                         "format of the mesh: ply, obj or glb; if it is not given, the extension of "
                         "--output-file decides")
-      .add_with_default("max-memory", &options.survey.memory.megabytes,
-                        "largest memory to use [MB] (0: 70 % of the free memory)")
+      .sets("type")
+      .add_max_memory(&options.survey.memory.megabytes)
       .add_with_default("tiles", &options.tiles,
                         "make the mesh in this many parts, so that less memory is needed")
+      .range(1, kMostTiles)
       .add("tile", &raw.tile,
            "make only tile I of N tiles (I/N); a run with --tiles N joins the tiles");
 }
@@ -66,6 +46,8 @@ void declare_reconstruction(OptionList& list, Options& options) {
   list.add_with_default("min-point-distance,d", &settings.merge.min_distance,
                         "points that are closer than this in all images that see them [px] are "
                         "merged (0: none)")
+      .range(0, 1e3)
+      .sets("merge.min_distance")
       .add_with_default("integrate-only-roi", &settings.only_region,
                         "use only points in the region of interest")
       .add_with_default("constant-weight", &settings.votes.constant_weight,
@@ -74,64 +56,48 @@ void declare_reconstruction(OptionList& list, Options& options) {
                         "also reconstruct surfaces that few points support")
       .add_with_default("thickness-factor", &settings.votes.thickness_factor,
                         "multiplies the expected error of the points along their rays")
+      .range(1e-3, 1e3)
       .add_with_default("quality-factor", &settings.votes.quality_factor,
-                        "multiplies the cost of badly shaped surfaces");
+                        "multiplies the cost of badly shaped surfaces")
+      .range(0, 1e3);
 }
 
 void declare_cleaning(OptionList& list, Options& options) {
   mesh::CleanOptions& clean = options.reconstruct.clean;
   list.add_with_default("decimate", &clean.decimate, "part of the faces to keep, from 0 to 1")
+      .range(1e-6, 1)
       .add_with_default("target-face-num", &clean.target_faces,
                         "number of faces to keep, instead of --decimate (0: not used)")
       .add_with_default("remove-spurious", &clean.spurious,
                         "remove faces whose longest edge is longer than a third of this many "
                         "median longest edges, where no camera has seen a surface, and pieces "
                         "smaller than this many mean edges (0: none)")
+      .range(0, 1e6)
       .add_with_default("remove-spikes", &clean.spikes,
                         "remove faces that hang on the mesh by one edge")
       .add_with_default("close-holes", &clean.close_holes,
                         "close holes of at most this many edges (0: none)")
+      .range(0, 1000)
       .add_with_default("close-unseen", &options.close_unseen,
                         "keep surface that no two cameras see, and mark it, instead of removing it "
                         "(with fewer than two cameras it is always kept)")
       .add_with_default("smooth", &clean.smooth, "number of smoothing steps")
+      .range(0, 1000)
       .add_with_default("edge-length", &clean.edge_length,
                         "remesh to edges of this length [scene units] (0: no)")
+      .range(0, 1e9)
       .add_with_default("roi-border", &options.roi_border,
                         "above 0 multiplies the region's size, below 0 adds to it [scene units]")
+      .range(-1e6, 1e6)
       .add_with_default("crop-to-roi", &options.reconstruct.crop_to_region,
                         "crop the mesh to the region of interest, if the scene has one");
 }
 
-template <class T>
-void check_range(const std::string& name, T value, T low, T high) {
-  if (!(value >= low && value <= high))
-    fail("--{} {}: must be from {} to {}", name, value, low, high);
-}
-
-void check_values(const Options& options) {
-  const mesh::ReconstructOptions& settings = options.reconstruct;
-  check_range("min-point-distance", settings.merge.min_distance, 0.0, 1e3);
-  check_range("thickness-factor", settings.votes.thickness_factor, 1e-3, 1e3);
-  check_range("quality-factor", settings.votes.quality_factor, 0.0, 1e3);
-  check_range("decimate", settings.clean.decimate, 1e-6, 1.0);
-  check_range("remove-spurious", settings.clean.spurious, 0.0, 1e6);
-  check_range("close-holes", settings.clean.close_holes, std::size_t{0}, std::size_t{1000});
-  check_range("smooth", settings.clean.smooth, 0u, 1000u);
-  check_range("edge-length", settings.clean.edge_length, 0.0, 1e9);
-  check_range("roi-border", options.roi_border, -1e6, 1e6);
-  check_range("max-memory", options.survey.memory.megabytes, std::uint64_t{0},
-              std::uint64_t{1} << 40);
-}
-
 void take_paths(const Raw& raw, Options& options) {
-  const CommonOptions& common = options.parsed.common;
-  options.survey.files = io::scene_files(raw.scene, raw.input, common);
-  options.cloud = in_working_folder(common, raw.cloud);
-  options.mesh = in_working_folder(common, raw.mesh);
-  options.output = io::mesh_file(
-      {options.survey.files.scene, output_in_working_folder(common, raw.output, "--output-file"),
-       raw.export_type, given(options.parsed, "export-type"), "_mesh", option_of});
+  options.survey.files = io::scene_files(raw.scene, raw.input, options.parsed);
+  options.output =
+      io::mesh_file({options.survey.files.scene, options.output, raw.export_type,
+                     given(options.parsed, "export-type"), "_mesh", options.parsed.option_of});
   refuse_control_characters(options.output, "--output-file");
 }
 
@@ -145,7 +111,6 @@ void refuse_other_triangles(const std::string& option, const Options& options) {
 }
 
 void take_tiles(const Raw& raw, Options& options) {
-  check_range("tiles", options.tiles, std::size_t{1}, kMostTiles);
   std::string option = fmt::format("--tiles {}", options.tiles);
   if (given(options.parsed, "tile")) {
     const Fraction fraction = parse_fraction("--tile", raw.tile, kMostTiles);
@@ -162,11 +127,11 @@ void take_tiles(const Raw& raw, Options& options) {
 // Warns of valid options that have no effect.
 void warn_of_no_effect(const Options& options) {
   if (options.mesh.empty()) return;
-  for (const char* name :
-       {"pointcloud-file", "min-point-distance", "integrate-only-roi", "constant-weight",
-        "free-space-support", "thickness-factor", "quality-factor"})
-    if (given(options.parsed, name))
-      log_warning("--{}: without effect with --mesh-file, which is only cleaned", name);
+  warn_without_effect(
+      options.parsed,
+      {"pointcloud-file", "min-point-distance", "integrate-only-roi", "constant-weight",
+       "free-space-support", "thickness-factor", "quality-factor"},
+      "with --mesh-file, which is only cleaned");
 }
 
 }  // namespace
@@ -183,19 +148,18 @@ Options parse_command_line(int argc, const char* const* argv) {
   io::declare_scene_options(program.visible, raw.scene);
   declare_reconstruction(program.visible, options);
   declare_cleaning(program.visible, options);
-  program.hidden.add("mesh-file", &raw.mesh, "clean this mesh instead of reconstructing");
-  std::vector<NotBuilt> visible = not_built(), hidden = not_built_hidden();
-  declare_not_built(program.visible, visible);
-  declare_not_built(program.hidden, hidden);
+  program.hidden.add("mesh-file", &options.mesh, "clean this mesh instead of reconstructing");
+  program.visible.add_not_built("cuda-device", "-1", {"-1", "-2"});
+  program.hidden.add_not_built("mesh-export", "0", {"0", "false", "no", "off"})
+      .add_not_built("split-max-area", "0", {"0", "0.0"})
+      .add_not_built("import-roi-file", "", {""})
+      .add_not_built("image-points-file", "", {""});
   options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
-  refuse_not_built(visible);
-  refuse_not_built(hidden);
-  check_values(options);
   options.reconstruct.clean.cut_off = options.reconstruct.clean.spurious;
   take_paths(raw, options);
   take_tiles(raw, options);
-  options.reconstruct.name_of = option_of;
+  options.reconstruct.name_of = options.parsed.option_of;
   warn_of_no_effect(options);
   return options;
 }

@@ -7,8 +7,10 @@
 #include "base/atomic_file.h"
 #include "base/log.h"
 #include "base/naming.h"
+#include "base/same_file.h"
 #include "io/colmap/colmap_lens.h"
 #include "pose/effective_lens.h"
+#include "stages.h"
 
 namespace axial::apps {
 namespace {
@@ -23,16 +25,20 @@ std::string line_of(std::uint32_t id, const lens::Lens& lens) {
 
 }  // namespace
 
-void write_effective_lenses(const std::filesystem::path& file,
-                            const std::vector<io::ColmapCamera>& lenses, const io::Housing& housing,
-                            double distance, const std::filesystem::path& lens_file) {
+void write_effective_lenses(const Options& options) {
+  const std::filesystem::path& file = options.effective_lens;
+  const std::vector<std::filesystem::path> inputs{options.lens, options.housing};
+  require_not_an_input(file, inputs, "--effective-lens");
+  const std::vector<io::ColmapCamera> lenses = load_lenses(options, {});
+  const io::Housing housing = load_housing(options, {}, lenses);
   std::string text =
       "# The lenses in air behind their ports, as single lenses: a start for COLMAP\n"
       "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n";
   for (const io::ColmapCamera& camera : lenses) {
-    const pose::EffectiveLens found = naming(lens_file, [&] {
+    const pose::EffectiveLens found = naming(options.lens, [&] {
       return pose::effective_lens(
-          {io::lens_of(camera), housing.carried_port(housing.port_of("", camera.id))}, distance);
+          {io::lens_of(camera), housing.carried_port(housing.port_of("", camera.id))},
+          options.scene_distance);
     });
     log_info(
         "Camera {}: {} with a focal length of {:.4g} px, RMS error {:.2g} px, largest {:.2g} px",

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "left_out.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "io/colmap/colmap_database.h"
 #include "pose/colmap_bundle.h"
 #include "pose/register_photographs.h"
@@ -273,17 +272,14 @@ Registered register_left_out(ColmapModel& model, const LeftOutPhotographs& left_
   return registered;
 }
 
-RegisteredLines lines_about(const Registered& registered) {
-  RegisteredLines lines;
+void log_registered(const Registered& registered) {
   const std::size_t count = registered.names.size();
   if (const std::size_t all = count + registered.left_out.size(); all > 0)
-    lines.infos.push_back(
-        fmt::format("Registered {} of {} photographs that COLMAP left out", count, all));
-  lines.infos.push_back(fmt::format("Tracks have {} further observations and {} further points",
-                                    registered.observations, registered.points));
+    log_info("Registered {} of {} photographs that COLMAP left out", count, all);
+  log_info("Tracks have {} further observations and {} further points", registered.observations,
+           registered.points);
   for (const Unregistered& one : registered.left_out)
-    lines.warnings.push_back(fmt::format("{}: not registered: {}", one.name, one.reason));
-  return lines;
+    log_warning("{}: not registered: {}", one.name, one.reason);
 }
 
 }  // namespace axial::apps

@@ -58,11 +58,7 @@ Registered register_left_out(io::ColmapModel& model, const LeftOutPhotographs& l
                              pose::Bundle bundle, pose::RefineOptions options,
                              const pose::TextSink& progress);
 
-// The lines about the photographs: how many were registered, and why the others were not. The lines
-// of the second list are warnings.
-struct RegisteredLines {
-  std::vector<std::string> infos, warnings;
-};
-RegisteredLines lines_about(const Registered& registered);
+// Logs how many photographs were registered, and warns of each that was not, with the reason.
+void log_registered(const Registered& registered);
 
 }  // namespace axial::apps

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
 
-#include <cmath>
-
 #include "base/error.h"
-#include "base/output_name.h"
-#include "base/setting_names.h"
 #include "base/unused_input.h"
 #include "base/version.h"
 #include "usual_housing.h"
@@ -13,14 +9,7 @@
 namespace axial::apps {
 namespace {
 
-// The options as text, before they are checked.
-struct Texts {
-  std::string input, lens, housing, output, effective_lens, database;
-};
-
 void check_effective_lens(const Options& options) {
-  if (!(options.scene_distance > 0 && std::isfinite(options.scene_distance)))
-    fail("--scene-distance {}: must be positive", options.scene_distance);
   for (const char* other : {"input-file", "output-folder", "scale-from", "refine", "database"})
     if (given(options.parsed, other))
       fail("--effective-lens {}: contradicts --{}", options.effective_lens.string(), other);
@@ -33,15 +22,6 @@ void check(const Options& options) {
   if (!options.effective_lens.empty()) return check_effective_lens(options);
   if (given(options.parsed, "scene-distance"))
     fail("--scene-distance {}: is for --effective-lens", options.scene_distance);
-  if (!(options.scale_sigma.metres > 0 && std::isfinite(options.scale_sigma.metres)))
-    fail("--scale-sigma {}: must be positive", options.scale_sigma.metres);
-  if (!(options.refine.tracks.max_error > 0))
-    fail("--max-error {}: must be positive", options.refine.tracks.max_error);
-  const double min_angle = options.refine.tracks.min_angle;
-  if (!(min_angle >= 0 && std::isfinite(min_angle)))
-    fail("--min-angle {}: must be 0 or more", min_angle);
-  if (options.poses != "adjust" && options.poses != "known")
-    fail("--poses {}: must be adjust or known", options.poses);
   if (options.poses == "known" && !options.scale_from.empty())
     fail("--scale-from {}: contradicts --poses known, which means that the model is in metres",
          options.scale_from);
@@ -51,32 +31,35 @@ void check(const Options& options) {
   if (options.output.empty()) fail("--output-folder is missing");
 }
 
-void declare_files(OptionList& visible, Texts& texts, Options& options) {
+void declare_files(OptionList& visible, Options& options, std::string& housing) {
   visible
-      .add("input-file,i", &texts.input,
+      .add("input-file,i", &options.model,
            "COLMAP folder of the raw underwater photographs, with any camera models: the model is "
            "in DIR/sparse, DIR/sparse/0 or DIR")
-      .add("lens", &texts.lens,
+      .add("lens", &options.lens,
            "lens calibrated in air: cameras.txt or cameras.bin, a folder with this file, or "
            "Calibmar's calibration.yaml; lenses by camera id, or one lens for all cameras; a model "
            "of COLMAP-Underwater contains it")
-      .add("housing", &texts.housing,
+      .add("housing", &housing,
            "housing file with the ports of the cameras; a model of COLMAP-Underwater and "
            "Calibmar's file contain them; flat, dome or unknown: usual numbers, which the "
            "photographs "
            "correct")
-      .add("output-folder,o", &texts.output,
+      .add("output-folder,o", &options.output,
            "folder for sparse/ (COLMAP text, lens in air), housing.json and report.json")
-      .add("database", &texts.database,
+      .output_folder()
+      .add("database", &options.database,
            "COLMAP's database of these photographs: photographs to which COLMAP gave no pose get "
            "one if their matches determine it, and observations are weighed by the sizes of their "
            "features")
-      .add("effective-lens", &texts.effective_lens,
+      .add("effective-lens", &options.effective_lens,
            "instead of refining poses, write this cameras.txt: the single lens that images nearly "
            "as "
            "the lens in air behind its port, for COLMAP to start with")
+      .output_file()
       .add_with_default("scene-distance", &options.scene_distance,
-                        "distance of the scene for --effective-lens [m]");
+                        "distance of the scene for --effective-lens [m]")
+      .positive();
 }
 
 // What is estimated, from which observations, and what is known.
@@ -85,6 +68,8 @@ void declare_estimate(OptionList& visible, Options& options) {
       .add_with_default("poses", &options.poses,
                         "adjust, or known: the poses are correct and in metres, and are kept; only "
                         "the points and the values of --refine are estimated")
+      .one_of({"adjust", "known"})
+      .sets("poses_known", " known")
       .add_with_default(
           "refine", &options.refine_list,
           "values of lens and port to estimate: auto, none, or a list of normal, "
@@ -101,36 +86,27 @@ void declare_estimate(OptionList& visible, Options& options) {
            "double quotes) or points:ID,ID,METRES or positions:FILE with a line NAME X Y Z for "
            "each image (names may contain blanks), or a file of Metashape, Pix4D, OpenDroneMap or "
            "a spreadsheet; without it, only refraction determines the scale, with low precision")
+      .sets("distances")
       .add_with_default("scale-sigma", &options.scale_sigma.metres,
                         "standard deviation of the lengths or positions of --scale-from [m]; "
                         "without this option, that of positions is estimated from their distances "
                         "to the cameras, unless their file states it")
+      .positive()
       .add_with_default("max-error", &options.refine.tracks.max_error,
                         "observations with larger errors are dropped [px]")
+      .positive()
       .add_with_default(
           "colmap-underwater", &options.underwater,
           "also write colmap-underwater/, the model with its ports for COLMAP-Underwater")
       .add_with_default("min-angle", &options.refine.tracks.min_angle,
-                        "points seen under smaller angles are dropped [degrees]");
+                        "points seen under smaller angles are dropped [degrees]")
+      .at_least(0);
 }
 
 }  // namespace
 
-std::string option_of(std::string_view setting) {
-  constexpr SettingName kOptions[] = {{"refine", "--refine"},
-                                      {"normal_sigma", "--normal-sigma"},
-                                      {"distance_sigma", "--distance-sigma"},
-                                      {"centre_sigma", "--centre-sigma"},
-                                      {"thickness_sigma", "--thickness-sigma"},
-                                      {"index_sigma", "--index-sigma"},
-                                      {"focal_sigma", "--focal-sigma"},
-                                      {"distances", "--scale-from"},
-                                      {"poses_known", "--poses known"}};
-  return name_in(kOptions, setting);
-}
-
 Options parse_command_line(int argc, const char* const* argv) {
-  Texts texts;
+  std::string housing;
   Options options;
   ProgramOptions program{
       "RefinePoses",
@@ -140,24 +116,15 @@ Options parse_command_line(int argc, const char* const* argv) {
   program.version = version_line(program.name);
   program.instead_of_input = "effective-lens";
   // In the order of --help.
-  declare_files(program.visible, texts, options);
+  declare_files(program.visible, options, housing);
   declare_estimate(program.visible, options);
   UnusedInput::declare(program.visible, options.allow_missing);
   options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
-  const CommonOptions& common = options.parsed.common;
-  options.model = in_working_folder(common, texts.input);
-  options.lens = in_working_folder(common, texts.lens);
-  if (is_usual_housing(texts.housing))
-    options.usual_housing = texts.housing;
+  if (is_usual_housing(housing))
+    options.usual_housing = housing;
   else
-    options.housing = in_working_folder(common, texts.housing);
-  options.output = folder_in_working_folder(common, texts.output, "--output-folder");
-  options.database = in_working_folder(common, texts.database);
-  options.effective_lens =
-      texts.effective_lens.empty()
-          ? std::filesystem::path()
-          : output_in_working_folder(common, texts.effective_lens, "--effective-lens");
+    options.housing = in_working_folder(options.parsed.common, housing);
   options.scale_sigma.given = given(options.parsed, "scale-sigma");
   check(options);
   return options;

@@ -37,7 +37,4 @@ struct Options {
 // `parsed.run` is false if nothing is left to do, for example after --help.
 Options parse_command_line(int argc, const char* const* argv);
 
-// Returns the option that sets `setting`, a setting of pose::set_estimated_numbers().
-std::string option_of(std::string_view setting);
-
 }  // namespace axial::apps

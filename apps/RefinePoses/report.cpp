@@ -3,18 +3,28 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "io/bytes/json.h"
 #include "pose/free_numbers.h"
-#include "position_lines.h"
 
 namespace axial::apps {
 namespace {
 
 using pose::Bundle;
+
+// Without positions that pull, adjustment cannot make the reprojection errors this much larger.
+constexpr double kLargerErrors = 1.1;
+
+// The estimated standard deviation [m]; 0 if all were stated.
+double estimated_sigma(const pose::RefineReport& report) {
+  const auto guess =
+      std::ranges::find(report.positions, true, &pose::KnownPosition::sigma_is_guess);
+  return guess == report.positions.end() ? 0 : guess->sigma.x();
+}
 
 std::string doubt(double sigma) {
   return std::isfinite(sigma) ? fmt::format(" +- {:.2g}", sigma) : " (not known)";
@@ -26,7 +36,7 @@ std::string in_words(double value, const std::string& doubt, const std::string& 
 }
 
 // The value, its stated value, and what decided.
-std::string in_words(const pose::FreeValue& value) {
+std::string in_words(const pose::HousingNumber& value) {
   const std::string found = value.name + " " + in_words(value.now, doubt(value.sigma), value.unit);
   if (!(value.sigma_before > 0))
     return fmt::format("{}, before: {}", found, in_words(value.before, "", value.unit));
@@ -50,7 +60,7 @@ nlohmann::ordered_json positive_or_null(double value) {
 }
 
 // What decided about a value; null before standard deviations are computed.
-nlohmann::ordered_json decided_by(const pose::FreeValue& value, bool computed) {
+nlohmann::ordered_json decided_by(const pose::HousingNumber& value, bool computed) {
   if (!computed) return nullptr;
   return value.by_photographs() ? "photographs" : "stated value";
 }
@@ -63,6 +73,16 @@ nlohmann::ordered_json json_of(const Registered& registered) {
             {"points", registered.points}};
   for (const Unregistered& one : registered.left_out)
     json["left_out"].push_back({{"name", one.name}, {"reason", one.reason}});
+  return json;
+}
+
+// The object "positions" of the report. Null if no position was used.
+nlohmann::ordered_json positions_json(const pose::RefineReport& report) {
+  if (report.positions.empty()) return nullptr;
+  const pose::PositionDistances& found = report.position_distances;
+  nlohmann::ordered_json json{{"count", found.count}, {"rms_m", found.rms}};
+  if (const double sigma = estimated_sigma(report); sigma > 0) json["estimated_sigma_m"] = sigma;
+  if (found.of_stated > 0) json["of_stated_sigma"] = found.of_stated;
   return json;
 }
 
@@ -102,13 +122,46 @@ std::vector<std::string> error_lines(const Results& results) {
   return lines;
 }
 
+std::vector<std::string> position_lines(const pose::RefineReport& report) {
+  if (report.positions.empty()) return {};
+  const pose::PositionDistances& found = report.position_distances;
+  std::string line =
+      fmt::format("{} positions are {:.2g} m (RMS) from the cameras", found.count, found.rms);
+  if (const double sigma = estimated_sigma(report); sigma > 0)
+    line += fmt::format("; the standard deviation of their coordinates is estimated as {:.2g} m",
+                        sigma);
+  if (found.of_stated > 0)
+    line +=
+        fmt::format("; the standard deviation of their coordinates is {:.2g} times the stated one",
+                    found.of_stated);
+  return {line};
+}
+
+std::vector<std::string> position_warnings(const pose::RefineReport& report) {
+  if (report.positions.empty()) return {};
+  std::vector<std::string> lines;
+  const double of_stated = report.position_distances.of_stated;
+  if (of_stated > pose::kContradicted)
+    lines.push_back(fmt::format(
+        "The positions deviate {:.2g} times as much from the cameras as their stated standard "
+        "deviation lets expect: state a larger one (--scale-sigma, or the accuracies in the file), "
+        "or none, so that it is estimated",
+        of_stated));
+  if (report.rms_after > kLargerErrors * report.rms_before)
+    lines.push_back(fmt::format(
+        "The positions made the RMS reprojection error larger: {:.3f} px before, {:.3f} px after. "
+        "They do not agree with the photographs, the lens and the housing{}",
+        report.rms_before, report.rms_after,
+        of_stated > 0 ? ", or their stated standard deviation is too small" : ""));
+  return lines;
+}
+
 std::vector<std::string> uncertainty_lines(const Results& results, const pose::Uncertainty& known) {
   std::vector<std::string> lines;
-  for (std::size_t i = 0; i < results.bundle.cameras.size(); ++i)
-    for (const pose::FreeValue& value :
-         pose::free_values(results.bundle.cameras[i], known.camera_sigmas[i], results.options))
-      lines.push_back(
-          fmt::format("Camera {} behind {}: {}", i + 1, results.ports[i], in_words(value)));
+  for (const pose::HousingNumber& value :
+       pose::free_values(results.bundle, known.camera_sigmas, results.options))
+    lines.push_back(fmt::format("Camera {} behind {}: {}", value.camera + 1,
+                                results.ports[value.camera], in_words(value)));
   if (results.options.poses_known) return lines;
   const double scale = scale_sigma(results, known.scale_sigma);
   lines.push_back(
@@ -157,19 +210,18 @@ std::string report_json(const Results& results, const pose::Uncertainty* known) 
                               {"observations", image.observations},
                               {"rms_before_px", image.rms_before},
                               {"rms_after_px", image.rms_after}});
-  for (std::size_t i = 0; i < results.bundle.cameras.size(); ++i) {
-    Json camera{{"id", i + 1}, {"port", results.ports[i]}, {"free", Json::array()}};
-    for (const pose::FreeValue& value : pose::free_values(
-             results.bundle.cameras[i], uncertainty.camera_sigmas[i], results.options))
-      camera["free"].push_back({{"name", value.name},
-                                {"unit", value.unit},
-                                {"value", value.now},
-                                {"sigma", finite_or_null(value.sigma)},
-                                {"before", value.before},
-                                {"sigma_before", positive_or_null(value.sigma_before)},
-                                {"decided_by", decided_by(value, known != nullptr)}});
-    json["cameras"].push_back(camera);
-  }
+  for (std::size_t i = 0; i < results.bundle.cameras.size(); ++i)
+    json["cameras"].push_back({{"id", i + 1}, {"port", results.ports[i]}, {"free", Json::array()}});
+  for (const pose::HousingNumber& value :
+       pose::free_values(results.bundle, uncertainty.camera_sigmas, results.options))
+    json["cameras"][value.camera]["free"].push_back(
+        {{"name", value.name},
+         {"unit", value.unit},
+         {"value", value.now},
+         {"sigma", finite_or_null(value.sigma)},
+         {"before", value.before},
+         {"sigma_before", positive_or_null(value.sigma_before)},
+         {"decided_by", decided_by(value, known != nullptr)}});
   // to_text() replaces bytes that are not UTF-8: such a name must not prevent the report.
   return io::to_text(json, 1) + "\n";
 }

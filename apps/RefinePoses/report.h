@@ -38,6 +38,14 @@ struct Results {
 // Returns the table of errors as lines for the log.
 std::vector<std::string> error_lines(const Results& results);
 
+// Returns the line for the log that says how far known positions lie from the cameras, and the
+// standard deviation of their coordinates. No line if no position was used.
+std::vector<std::string> position_lines(const pose::RefineReport& report);
+
+// Returns the warnings about known positions that deviate more than their stated standard
+// deviations let expect, or that made the reprojection errors larger.
+std::vector<std::string> position_warnings(const pose::RefineReport& report);
+
 // Returns the free numbers, their stated values, what decided about them, and the standard
 // deviation of lengths as lines for the log. `known`: the standard deviations of the refinement.
 std::vector<std::string> uncertainty_lines(const Results& results, const pose::Uncertainty& known);

@@ -3,11 +3,38 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "base/out_of_memory.h"
+#include "io/cameras/geo_offset.h"
+#include "stages.h"
 
 namespace axial::apps {
+namespace {
 
 namespace fs = std::filesystem;
+
+void write_model(const Options& options, const fs::path& folder, const io::ColmapModel& model,
+                 const io::Housing& housing) {
+  io::write_housing(folder / "housing.json", housing);
+  if (options.underwater) {
+    make_folder(folder / "colmap-underwater");
+    io::write_underwater_text(folder / "colmap-underwater", model);
+    io::write_underwater_binary(folder / "colmap-underwater", model);
+  }
+  make_folder(folder / "sparse");
+  io::write_colmap_text(folder / "sparse", model);
+}
+
+// Writes the lens and the housing again, with the standard deviations of the results.
+void write_sigmas(const Options& options, const Input& input, const pose::ColmapBundle& refined,
+                  const pose::Uncertainty& known) {
+  const auto sigmas = pose::present_sigmas(refined.bundle, options.refine.adjust, &known);
+  io::write_housing(options.output / "housing.json", to_housing(refined, input.housing, sigmas));
+  io::write_colmap_cameras(options.output / "sparse" / "cameras.txt",
+                           refined_cameras(refined, sigmas));
+}
+
+}  // namespace
 
 pose::Uncertainty write_results(const fs::path& folder,
                                 const std::function<void(const fs::path& staging)>& write_model,
@@ -26,6 +53,31 @@ pose::Uncertainty write_results(const fs::path& folder,
     fail("{}: contains the refined model, only its standard deviations are missing: {}",
          folder.string(), is_out_of_memory(error) ? "memory ran out" : error.what());
   }
+}
+
+pose::Uncertainty write(const Options& options, const Input& input, const Refined& refined,
+                        const Results& results) {
+  const pose::ColmapBundle& after = refined.after;
+  const auto sigmas = pose::present_sigmas(after.bundle, results.options, nullptr);
+  const io::Housing housing = to_housing(after, input.housing, sigmas);
+  for (const auto& [name, port] : housing.ports) io::check_port(port, "The refined port " + name);
+  io::ColmapModel model = to_model(after, input.model, sigmas);
+  io::leave(refined.frame, model);
+  // With fewer images, the parts of the work take less than a second.
+  const bool is_long = after.bundle.images.size() >= results.options.many_images;
+  const auto log_if_long = [&](const std::string& line) {
+    if (is_long) log_info("{}", line);
+  };
+  return write_results(
+      options.output, [&](const fs::path& folder) { write_model(options, folder, model, housing); },
+      results,
+      [&] {
+        log_info("Refined model in {}", options.output.string());
+        model = {};
+        pose::Uncertainty known = pose::uncertainty(after.bundle, results.options, log_if_long);
+        write_sigmas(options, input, after, known);
+        return known;
+      });
 }
 
 }  // namespace axial::apps

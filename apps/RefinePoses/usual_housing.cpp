@@ -14,15 +14,15 @@ std::optional<pose::PortKind> kind_named(std::string_view word) {
 }
 
 io::Housing usual_housing(pose::PortKind kind) {
-  constexpr double kNormal = 3, kDistance = 0.03, kCentre = 0.01, kIndex = 0.004;
-  io::Housing housing = io::housing_with(io::to_housing_port(*pose::usual_port(kind)));
+  const pose::Sigmas usual = diagnosis::usual_sigmas();
+  io::Housing housing = io::housing_with(io::to_housing_port(*diagnosis::usual_port(kind)));
   io::PortSigmas sigmas;
-  sigmas.index = kIndex;
+  sigmas.index = usual.index;
   if (kind == pose::PortKind::flat) {
-    sigmas.normal_degrees = Eigen::Vector2d::Constant(kNormal);
-    sigmas.distance = kDistance;
+    sigmas.normal_degrees = Eigen::Vector2d::Constant(usual.normal_degrees);
+    sigmas.distance = usual.distance;
   } else {
-    sigmas.centre = Eigen::Vector3d::Constant(kCentre);
+    sigmas.centre = Eigen::Vector3d::Constant(usual.centre);
   }
   housing.sigmas[housing.default_port] = sigmas;
   return housing;

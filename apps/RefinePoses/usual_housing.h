@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "diagnosis/port_kind.h"
 #include "io/cameras/housing.h"
-#include "pose/port_kind.h"
 
 namespace axial::apps {
 
@@ -17,9 +17,8 @@ bool is_usual_housing(std::string_view word);
 // The kind of port of such a word; nothing for "unknown".
 std::optional<pose::PortKind> kind_named(std::string_view word);
 
-// A housing of pose::usual_port() for all images, with wide standard deviations: 3 degrees for the
-// normal, 3 cm for the distance, 1 cm for the centre of a dome, and 0.004 for the index of the
-// water. Precondition: the kind is a port.
+// A housing of diagnosis::usual_port() for all images, with the standard deviations of
+// diagnosis::usual_sigmas(). Precondition: the kind is a port.
 io::Housing usual_housing(pose::PortKind kind);
 
 }  // namespace axial::apps

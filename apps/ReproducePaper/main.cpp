@@ -12,9 +12,8 @@
 namespace axial::apps {
 namespace {
 
-void reproduce(const experiments::Experiment& experiment, const Arguments& arguments,
-               const CommonOptions& common) {
-  const std::filesystem::path folder = results_folder(arguments, common);
+void reproduce(const experiments::Experiment& experiment, const Arguments& arguments) {
+  const std::filesystem::path folder = results_folder(arguments);
   experiments::compute(experiment.name, experiments::chosen_parts(experiment, arguments.part),
                        folder, console_progress(experiment.name));
   const experiments::Json results = experiments::kept_results(experiment, arguments.quick, folder);
@@ -23,7 +22,7 @@ void reproduce(const experiments::Experiment& experiment, const Arguments& argum
     return;
   }
   write_atomically(folder / (experiment.name + ".json"), io::to_text(results) + "\n");
-  std::filesystem::remove_all(work_folder(arguments, common, experiment.name));
+  std::filesystem::remove_all(work_folder(arguments, experiment.name));
   log_info("{}: {} parts in {}", experiment.name, experiment.parts.size(), folder.string());
 }
 
@@ -45,9 +44,8 @@ int run(int argc, char** argv) {
   warn_of_no_effect(arguments, parsed);
   const auto experiments = chosen_experiments(arguments, parsed.common);
   const ThreadLimit limit(parsed.common.max_threads);
-  for (const experiments::Experiment& experiment : experiments)
-    reproduce(experiment, arguments, parsed.common);
-  log_times(experiments, results_folder(arguments, parsed.common));
+  for (const experiments::Experiment& experiment : experiments) reproduce(experiment, arguments);
+  log_times(experiments, results_folder(arguments));
   return 0;
 }
 

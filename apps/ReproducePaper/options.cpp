@@ -2,13 +2,11 @@
 #include "options.h"
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 #include <string_view>
 
 #include "base/error.h"
-#include "base/log.h"
-#include "base/output_name.h"
+#include "base/option_values.h"
 #include "base/parse_number.h"
 #include "base/split.h"
 #include "base/version.h"
@@ -32,12 +30,15 @@ void declare_completeness(OptionList& list, Arguments& a) {
   list.add_with_default("preset", &a.completeness.preset,
                         "completeness: preset of SimulateUnderwater")
       .add_with_default("medium", &a.completeness.medium, "completeness: medium, air or water")
+      .one_of({"air", "water"})
       .add_with_default(
           "poses", &a.completeness.poses,
           "completeness: poses, true or colmap (found by COLMAP in photographs in air)")
+      .one_of({"true", "colmap"})
       .add("seeds", &a.seeds, "completeness: seeds of the scenes (default: 11,12,13)")
       .add("tolerance", &a.completeness.tolerance,
            "completeness: tolerance [m] (default: 0.002 for closeup and thicket, 0.005 for others)")
+      .at_least(0)
       .add("scene-options", &a.scene_options,
            "completeness: more options of SimulateUnderwater, in quotes")
       .add("dense-options", &a.dense_options,
@@ -64,15 +65,8 @@ std::vector<int> seeds_of(const std::string& text) {
   return seeds;
 }
 
-// Error that names the option for an unknown medium, unknown poses, an invalid tolerance, and for
-// seeds that are missing or occur twice.
+// Error that names the option for seeds that are missing or occur twice.
 void check(const experiments::CompletenessOptions& o) {
-  if (o.medium != "air" && o.medium != "water")
-    fail("--medium is '{}': must be air or water", o.medium);
-  if (o.poses != "true" && o.poses != "colmap")
-    fail("--poses is '{}': must be true or colmap", o.poses);
-  if (!(o.tolerance >= 0) || !std::isfinite(o.tolerance))
-    fail("--tolerance is {}: must be a length in metres", o.tolerance);
   if (o.seeds.empty()) fail("--seeds is empty: must be whole numbers, separated by commas");
   std::vector<int> seeds = o.seeds;
   std::ranges::sort(seeds);
@@ -89,8 +83,7 @@ experiments::Experiment completeness_of(const Arguments& a, const CommonOptions&
   options.dense = words_of(a.dense_options);
   check(options);
   const std::filesystem::path work =
-      a.work.empty() ? work_folder(a, common, experiments::completeness_name(options))
-                     : in_working_folder(common, a.work);
+      a.work.empty() ? work_folder(a, experiments::completeness_name(options)) : a.work;
   return experiments::completeness({work, common.max_threads}, options);
 }
 
@@ -102,10 +95,10 @@ bool is_completeness(const Arguments& a) {
 
 void warn_of_no_effect(const Arguments& a, const ParsedOptions& parsed) {
   if (is_completeness(a)) return;
-  for (const char* name : {"preset", "medium", "poses", "seeds", "tolerance", "scene-options",
-                           "dense-options", "work"})
-    if (given(parsed, name))
-      log_warning("--{}: without effect except on the experiment {}", name, kCompleteness);
+  warn_without_effect(
+      parsed,
+      {"preset", "medium", "poses", "seeds", "tolerance", "scene-options", "dense-options", "work"},
+      fmt::format("except on the experiment {}", kCompleteness));
 }
 
 ProgramOptions describe(Arguments& a) {
@@ -120,6 +113,7 @@ ProgramOptions describe(Arguments& a) {
   program.visible
       .add("output,o", &a.output,
            "folder of the results (required); finished parts in this folder are not computed again")
+      .output_folder()
       .add_switch("quick", &a.quick,
                   "fewer samples and smaller images: results in a few minutes, in DIR/quick")
       .add("part", &a.part,
@@ -131,14 +125,12 @@ ProgramOptions describe(Arguments& a) {
   return program;
 }
 
-std::filesystem::path results_folder(const Arguments& a, const CommonOptions& common) {
-  const std::filesystem::path folder = folder_in_working_folder(common, a.output, "--output");
-  return a.quick ? folder / "quick" : folder;
+std::filesystem::path results_folder(const Arguments& a) {
+  return a.quick ? a.output / "quick" : a.output;
 }
 
-std::filesystem::path work_folder(const Arguments& a, const CommonOptions& common,
-                                  const std::string& experiment) {
-  return results_folder(a, common) / "work" / experiment;
+std::filesystem::path work_folder(const Arguments& a, const std::string& experiment) {
+  return results_folder(a) / "work" / experiment;
 }
 
 std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
@@ -157,7 +149,7 @@ std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
   // Made only if asked for: they read the chain's programs, which other experiments do not need.
   for (const auto& [name, make] : kChained)
     if (asked_for(name))
-      chosen.push_back(make({work_folder(a, common, name), common.max_threads}, a.quick));
+      chosen.push_back(make({work_folder(a, name), common.max_threads}, a.quick));
   // Not part of `all`, because it does not repeat an experiment of the paper.
   if (is_completeness(a)) chosen.push_back(completeness_of(a, common));
   if (chosen.empty())

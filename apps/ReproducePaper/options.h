@@ -12,11 +12,13 @@
 namespace axial::apps {
 
 struct Arguments {
-  std::string experiment, output;
+  std::string experiment;
+  std::filesystem::path output;
   std::string part;  // compute only the parts whose names begin with this text
   bool quick = false;
   experiments::CompletenessOptions completeness;  // for the experiment `completeness`
-  std::string seeds, scene_options, dense_options, work;
+  std::string seeds, scene_options, dense_options;
+  std::filesystem::path work;
 };
 
 // Returns the options of ReproducePaper. Parsing the options fills `a`.
@@ -32,11 +34,10 @@ std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
 
 // The folder of all results. A quick run has its own folder inside the output folder, so that it
 // does not remove or replace the results of a full run.
-std::filesystem::path results_folder(const Arguments& a, const CommonOptions& common);
+std::filesystem::path results_folder(const Arguments& a);
 
 // The folder of an experiment's intermediate files, which is removed when the experiment is
 // finished.
-std::filesystem::path work_folder(const Arguments& a, const CommonOptions& common,
-                                  const std::string& experiment);
+std::filesystem::path work_folder(const Arguments& a, const std::string& experiment);
 
 }  // namespace axial::apps

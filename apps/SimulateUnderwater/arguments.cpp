@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arguments.h"
 
-#include <cmath>
 #include <sstream>
 #include <vector>
 
@@ -19,6 +18,7 @@ void declare_scene(OptionList& visible, Arguments& a) {
                         "NAME-hazy: with haze 6/7")
       .add_with_default("seed", &a.preset.seed, "seed of all random numbers")
       .add("output,o", &a.output, "folder of the scene (required)")
+      .output_folder()
       .add_with_default("views", &a.preset.views, "number of images (0: the preset's number)")
       .add_with_default("width", &a.preset.width, "width of the images [px]")
       .add_with_default("height", &a.preset.height, "height of the images [px]")
@@ -34,14 +34,17 @@ void declare_scene(OptionList& visible, Arguments& a) {
                   "a second survey of the reef: a boulder moved, a patch of 1 m x 1 m grew by 20 "
                   "mm, and the views and the noise are others; writes change.json")
       .add_with_default("samples", &a.samples, "rays along each side of a pixel")
+      .range(1, 16)
       .add_with_default("sparse-points", &a.sparse_points,
-                        "sparse points of the COLMAP model that are placed for each view");
+                        "sparse points of the COLMAP model that are placed for each view")
+      .range(1, 10000);
 }
 
 void declare_port(OptionList& visible, Arguments& a) {
   visible.add("port-distance", &a.port_distance, "camera centre to glass [m]")
       .add("port-thickness", &a.port_thickness, "thickness of the glass [m]")
       .add("tilt-degrees", &a.tilt_degrees, "tilt of the port against the optical axis")
+      .range(-45, 45)
       .add("water-level", &a.water_level,
            "height of a water surface below cameras in air, which replaces the port [m]")
       .add("dome-radius", &a.dome_radius,
@@ -58,11 +61,15 @@ void declare_photographs(OptionList& visible, Arguments& a) {
       .add("haze", &a.haze,
            "share of the light that the medium, water or air, scatters into view, 0 to 1 (default: "
            "the preset's value, which is 0 except for NAME-hazy)")
+      .range(0, 1)
       .add_with_default("noise", &a.noise, "standard deviation of the noise [grey levels]")
+      .range(0, 255)
       .add_with_default("jpeg-quality", &a.jpeg_quality, "JPEG quality, 1 to 100")
+      .range(1, 100)
       .add_with_default("truth", &a.truth, "write distances and normals of the images")
       .add_switch("truth-only", &a.truth_only, "write only mesh.ply, distances and normals")
-      .add_with_default("medium", &a.medium, "air, water or both");
+      .add_with_default("medium", &a.medium, "air, water or both")
+      .one_of({"air", "water", "both"});
 }
 
 }  // namespace
@@ -82,17 +89,6 @@ ProgramOptions describe(Arguments& a) {
 void check(const Arguments& a) {
   if (a.truth_only && !a.truth) fail("--truth-only contradicts --truth 0");
   if (a.output.empty()) fail("no output folder given (-o DIR)");
-  if (a.medium != "air" && a.medium != "water" && a.medium != "both")
-    fail("--medium is '{}': must be air, water or both", a.medium);
-  if (!(a.haze >= 0 && a.haze <= 1)) fail("--haze is {}: must be between 0 and 1", a.haze);
-  if (!(a.noise >= 0 && a.noise <= 255)) fail("--noise is {}: must be between 0 and 255", a.noise);
-  if (a.jpeg_quality < 1 || a.jpeg_quality > 100)
-    fail("--jpeg-quality is {}: must be between 1 and 100", a.jpeg_quality);
-  if (a.sparse_points < 1 || a.sparse_points > 10000)
-    fail("--sparse-points is {}: must be between 1 and 10000", a.sparse_points);
-  if (a.samples < 1 || a.samples > 16) fail("--samples is {}: must be between 1 and 16", a.samples);
-  if (!(std::abs(a.tilt_degrees) <= 45))
-    fail("--tilt-degrees is {}: must be between -45 and 45", a.tilt_degrees);
 }
 
 void apply_lens_option(simulate::Preset& preset, const Arguments& a) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "base/program.h"
@@ -10,7 +11,8 @@ namespace axial::apps {
 
 struct Arguments {
   simulate::PresetOptions preset;
-  std::string output, medium = "both", lens;
+  std::filesystem::path output;
+  std::string medium = "both", lens;
   int samples = 3, jpeg_quality = 93;
   int sparse_points = 400;  // for each view
   double haze = 0, noise = 1.2;
@@ -23,7 +25,7 @@ struct Arguments {
 // Returns the options of SimulateUnderwater. Parsing the options fills `a`.
 ProgramOptions describe(Arguments& a);
 
-// Checks the values of the options. Error that names the option and its value.
+// Error if options are missing or contradict each other.
 void check(const Arguments& a);
 
 // Replaces the preset's lens by the lens of --lens, if this option is given. Error for an unknown

@@ -4,7 +4,6 @@
 #include "arguments.h"
 #include "base/atomic_file.h"
 #include "base/log.h"
-#include "base/output_name.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "io/images/image.h"
@@ -72,8 +71,7 @@ int run(int argc, char** argv) {
   apply_lens_option(preset, arguments);
   apply_port_options(preset, arguments, parsed);
   simulate::check_ports(preset);
-  simulate_scene(arguments, preset,
-                 folder_in_working_folder(parsed.common, arguments.output, "--output"));
+  simulate_scene(arguments, preset, arguments.output);
   return 0;
 }
 

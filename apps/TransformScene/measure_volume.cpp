@@ -7,7 +7,7 @@
 #include "base/log.h"
 #include "base/order_statistics.h"
 #include "evaluate/topology.h"
-#include "evaluate/volume.h"
+#include "geometry/volume.h"
 #include "moved_mesh.h"
 
 namespace axial::apps {
@@ -39,14 +39,14 @@ void measure(const Options& options, const Scene& scene, const FrameMove& move) 
     log_warning("{}: {} edges are inconsistently oriented: the volume is not reliable",
                 options.mesh.string(), topology.inconsistent_edges);
   if (closed)
-    log_info("Volume that the mesh encloses: {:.9g} m^3", evaluate::enclosed_volume(mesh));
+    log_info("Volume that the mesh encloses: {:.9g} m^3", geometry::enclosed_volume(mesh));
   if (options.plane_threshold < 0) return;
-  const evaluate::Plane plane = evaluate::ground_plane(mesh, middle_of_cameras(scene),
+  const geometry::Plane plane = geometry::ground_plane(mesh, middle_of_cameras(scene),
                                                        {options.up_axis, options.plane_threshold});
   const Eigen::Vector3d& n = plane.normal;
   log_info("Ground plane: normal ({:.6f}, {:.6f}, {:.6f}), {:.6f} m from the origin", n.x(), n.y(),
            n.z(), plane.offset + n.dot(move.to.origin));
-  log_info("Volume above the ground plane: {:.9g} m^3", evaluate::volume_above(mesh, plane));
+  log_info("Volume above the ground plane: {:.9g} m^3", geometry::volume_above(mesh, plane));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "base/output_name.h"
 #include "evaluate/alignment.h"
-#include "evaluate/sampling.h"
+#include "geometry/sampling.h"
 #include "io/openmvs/point_source.h"
 #include "io/ply/ply.h"
 
@@ -54,7 +54,7 @@ fs::path samples_file(const Options& options) {
 void write_samples(const Options& options, const FrameMove& move, const fs::path& file) {
   const Mesh mesh = moved_mesh(options, move);
   PointCloud cloud;
-  cloud.positions = evaluate::sample_surface(mesh, count_of_samples(options, mesh), kSeed);
+  cloud.positions = geometry::sample_surface(mesh, count_of_samples(options, mesh), kSeed);
   io::write_cloud_ply(file, cloud, false, {move.to});
 }
 

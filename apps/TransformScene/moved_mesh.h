@@ -19,7 +19,7 @@ std::filesystem::path samples_file(const Options& options);
 
 // Writes random points on the moved mesh, uniform by area, to `file`. Options::sample_mesh below 0:
 // minus the number of points; above 0: points for each square unit of area. Error that names the
-// option for more than 10^8 points, and Errors of moved_mesh() and evaluate::sample_surface().
+// option for more than 10^8 points, and Errors of moved_mesh() and geometry::sample_surface().
 void write_samples(const Options& options, const FrameMove& move,
                    const std::filesystem::path& file);
 

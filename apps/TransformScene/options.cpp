@@ -2,12 +2,12 @@
 #include "options.h"
 
 #include <cmath>
-#include <vector>
+#include <initializer_list>
 
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "base/log.h"
-#include "base/not_built.h"
+#include "base/option_values.h"
 #include "base/output_name.h"
 #include "base/version.h"
 #include "io/openmvs/scene_options.h"
@@ -18,39 +18,36 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The values of the command line before they are converted.
 struct Texts {
-  std::string input, cloud, mesh, output;
+  std::string input;
   io::SceneOptions cameras;
-  std::string align, transform, positions, transform_out;
 };
-
-std::vector<NotBuilt> not_built() {
-  return {{"transfer-texture-file", "", {""}}, {"indices-file", "", {""}}};
-}
 
 void declare_files(OptionList& list, Options& options, Texts& texts) {
   list.add("input-file,i", &texts.input, "scene to transform (.mvs)")
-      .add("pointcloud-file,p", &texts.cloud,
+      .add("pointcloud-file,p", &options.cloud,
            "PLY cloud in the scene's coordinates, transformed with it")
-      .add("mesh-file,m", &texts.mesh,
+      .add("mesh-file,m", &options.mesh,
            "mesh in the scene's coordinates, transformed with it: PLY, OBJ, GLB or glTF")
-      .add("output-file,o", &texts.output,
+      .add("output-file,o", &options.output,
            "scene to write (<input>_transform.mvs); the cloud and the mesh are written beside it, "
            "as .ply and _mesh.ply")
+      .output_file()
       .add_with_default("export-type", &options.export_type,
                         "format of the mesh that is written: ply, obj, glb or gltf; a mesh that is "
                         "not transformed is written, too, if this option is given");
   io::declare_scene_options(list, texts.cameras);
 }
 
-void declare_moves(OptionList& list, Options& options, Texts& texts) {
-  list.add("align-file,a", &texts.align,
+void declare_moves(OptionList& list, Options& options) {
+  list.add("align-file,a", &options.align,
            "scene (.mvs) whose camera centres give the similarity; images are matched by name, or "
            "by their order if names do not match and the numbers of images agree")
-      .add("transform-file,t", &texts.transform,
+      .add("transform-file,t", &options.transform,
            "text file with 12 or 16 numbers: the similarity as a matrix, row by row, from world to "
            "world coordinates")
-      .add("positions", &texts.positions,
+      .add("positions", &options.positions,
            "text file with the known positions of camera centres: a line NAME X Y Z for an image, "
            "or a file of Metashape, Pix4D, OpenDroneMap or a spreadsheet")
       .add_switch("rigid", &options.rigid, "align without a change of scale")
@@ -58,8 +55,9 @@ void declare_moves(OptionList& list, Options& options, Texts& texts) {
                   "a change of scale also changes the lengths of the ports that cameras carry. "
                   "Without it such a change is an error behind these ports, because their lengths "
                   "are known in metres")
-      .add("transform-out", &texts.transform_out,
-           "write the transformation to this file, as a 4 x 4 matrix, row by row");
+      .add("transform-out", &options.transform_out,
+           "write the transformation to this file, as a 4 x 4 matrix, row by row")
+      .output_file();
 }
 
 void declare_other_work(OptionList& list, Options& options) {
@@ -72,32 +70,24 @@ void declare_other_work(OptionList& list, Options& options) {
       .add_with_default("up-axis", &options.up_axis,
                         "0, 1, 2: the axis from which the ground plane's normal is at most 45 "
                         "degrees away; the cameras are above the plane")
+      .range(0, 2)
       .add("sample-mesh", &options.sample_mesh,
            "write random points on the mesh, after the transformation, to <output>_samples.ply: "
            "below 0, minus the number of points; above 0, points for each square unit of area")
       .add_with_default("max-resolution", &options.max_resolution,
                         "shrink images whose longest side is longer [px], into the folder "
-                        "images<N> beside the output (0: no limit)");
+                        "images<N> beside the output (0: no limit)")
+      .add_not_built("transfer-texture-file", "", {""})
+      .add_not_built("indices-file", "", {""});
 }
 
 void set_paths(const Texts& texts, Options& options) {
-  const auto path = [&](const std::string& text) {
-    return in_working_folder(options.parsed.common, text);
-  };
   options.survey.has_memory_limit = false;
-  options.survey.files = io::scene_files(texts.cameras, texts.input, options.parsed.common);
-  options.cloud = path(texts.cloud);
-  options.mesh = path(texts.mesh);
-  options.align = path(texts.align);
-  options.transform = path(texts.transform);
-  options.positions = path(texts.positions);
-  const CommonOptions& common = options.parsed.common;
-  options.transform_out = output_in_working_folder(common, texts.transform_out, "--transform-out");
-  options.output =
-      with_extension(output_or(common, texts.output,
-                               without_known_extension(options.survey.files.scene) += "_transform",
-                               "--output-file"),
-                     ".mvs");
+  options.survey.files = io::scene_files(texts.cameras, texts.input, options.parsed);
+  options.output = with_extension(
+      output_or(options.output, without_known_extension(options.survey.files.scene) += "_transform",
+                "--output-file"),
+      ".mvs");
 }
 
 void check_mesh_outputs(Options& options) {
@@ -137,24 +127,20 @@ void check(const Options& options) {
       kind != ".gltf")
     fail("{}: not built yet: meshes are read from PLY, OBJ, GLB and glTF files",
          options.mesh.string());
-  if (options.up_axis < 0 || options.up_axis > 2)
-    fail("--up-axis is {}: must be 0, 1 or 2", options.up_axis);
   if (!std::isfinite(options.plane_threshold))
     fail("--plane-threshold is {}: must be a length in metres", options.plane_threshold);
 }
 
 void warn_of_no_effect(const Options& options) {
-  const auto warn = [&](bool without_effect, const char* name, const char* cause) {
-    if (without_effect && given(options.parsed, name))
-      log_warning("--{}: without effect {}", name, cause);
+  const auto warn = [&](bool without_effect, std::initializer_list<const char*> names,
+                        const char* cause) {
+    if (without_effect) warn_without_effect(options.parsed, names, cause);
   };
-  warn(options.align.empty() && options.positions.empty(), "rigid",
+  warn(options.align.empty() && options.positions.empty(), {"rigid"},
        "without --align-file or --positions");
-  warn(!options.moves(), "scale-ports", "without a transformation");
-  warn(!options.moves(), "transform-out", "without a transformation");
-  warn(options.mesh.empty(), "export-type", "without --mesh-file");
-  for (const char* name : {"plane-threshold", "up-axis"})
-    warn(!options.compute_volume, name, "without --compute-volume 1");
+  warn(!options.moves(), {"scale-ports", "transform-out"}, "without a transformation");
+  warn(options.mesh.empty(), {"export-type"}, "without --mesh-file");
+  warn(!options.compute_volume, {"plane-threshold", "up-axis"}, "without --compute-volume 1");
 }
 
 }  // namespace
@@ -169,13 +155,10 @@ Options parse_command_line(int argc, const char* const* argv) {
                          {}};
   program.version = version_line(program.name);
   declare_files(program.visible, options, texts);
-  declare_moves(program.visible, options, texts);
+  declare_moves(program.visible, options);
   declare_other_work(program.visible, options);
-  std::vector<NotBuilt> refused = not_built();
-  declare_not_built(program.visible, refused);
   options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
-  refuse_not_built(refused);
   set_paths(texts, options);
   check_mesh_outputs(options);
   check_samples(options);

@@ -145,7 +145,7 @@ Json add_maps(Layers& layers, const MapOptions& options, const fs::path& staging
   const view::ColorScale counts = from_0(view::dark_to_green(), views.pixels, 1);
   layers.add("views", "Views", views, view::painted(views.pixels, counts),
              legend(counts, "photographs"));
-  if (fs::exists(options.maps + ".sigma.tif")) {
+  if (fs::exists(options.maps.string() + ".sigma.tif")) {
     const ReducedMap sigma =
         layers.read(options.maps, ".sigma.tif", MapKind::heights, kinds::kErrors);
     const view::ColorScale errors = from_0(view::dark_to_light(), sigma.pixels, kHighShare);
@@ -170,7 +170,8 @@ cv::Mat3b painted_classes(const cv::Mat1f& classes) {
 }
 
 Json add_changes(Layers& layers, const MapOptions& options) {
-  const std::string prefix = options.changes + ".change";  // --map may have the same PREFIX
+  const std::string prefix =
+      options.changes.string() + ".change";  // --map may have the same PREFIX
   const Json report = change_report(prefix + ".json");
   const ReducedMap difference =
       layers.read(prefix, ".difference.tif", MapKind::heights, kinds::kDifference);

@@ -9,9 +9,9 @@
 namespace axial::apps {
 
 struct MapOptions {
-  std::string maps;         // the begin of the names that MapSurface wrote; empty: none
-  std::string changes;      // the begin of the names that CompareSurveys wrote; empty: none
-  int longest_side = 4096;  // of the pictures [px]
+  std::filesystem::path maps;     // the begin of the names that MapSurface wrote; empty: none
+  std::filesystem::path changes;  // the begin of the names that CompareSurveys wrote; empty: none
+  int longest_side = 4096;        // of the pictures [px]
 };
 
 // Writes the pictures of all maps and the heights to `staging`. Returns what the page needs to show

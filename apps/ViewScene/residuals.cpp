@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "base/log.h"
-#include "pose/residual_cause.h"
+#include "diagnosis/residual_cause.h"
 #include "tracked.h"
 
 namespace axial::apps {
@@ -49,9 +49,9 @@ double rms_of(const Vectors& errors) {
   return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
 }
 
-Data grid_of(const pose::ResidualPattern& pattern) {
+Data grid_of(const diagnosis::ResidualPattern& pattern) {
   Data cells = Data::array();
-  for (const pose::PatternCell& cell : pattern.cells)
+  for (const diagnosis::PatternCell& cell : pattern.cells)
     cells.push_back({cell.count, rounded(cell.mean.x()), rounded(cell.mean.y()),
                      rounded(cell.standard_error.norm()), rounded(cell.rms)});
   return {{"columns", pattern.columns}, {"rows", pattern.rows}, {"cells", cells}};
@@ -73,7 +73,7 @@ Data errors_of(const Errors& errors) {
 }
 
 Data camera_of(const CameraModel& model, const Errors& errors,
-               const pose::ResidualPattern& pattern) {
+               const diagnosis::ResidualPattern& pattern) {
   Data data = errors_of(errors);
   data["size"] = {model.width, model.height};
   data["noise"] = rounded(pattern.noise);
@@ -87,37 +87,37 @@ Data camera_of(const CameraModel& model, const Errors& errors,
   return data;
 }
 
-Data cause_data(const pose::Cause& cause) {
+Data cause_data(const diagnosis::Cause& cause) {
   Data data{{"name", cause.name}, {"share", rounded(cause.share)}, {"numbers", Data::array()}};
-  if (cause.camera != pose::kAllCameras) data["camera"] = cause.camera;
-  for (const pose::CauseNumber& number : cause.numbers)
-    data["numbers"].push_back({{"name", number.name},
+  if (cause.camera != diagnosis::kAllCameras) data["camera"] = cause.camera;
+  for (const pose::HousingNumber& number : cause.numbers)
+    data["numbers"].push_back({{"name", number.title},
                                {"unit", number.unit},
-                               {"stated", number.stated},
+                               {"stated", number.before},
                                {"change", number.change},
                                {"sigma", number.sigma}});
   return data;
 }
 
 // The cameras, those whose patterns are largest first.
-std::vector<std::size_t> suspects_of(const std::vector<pose::ResidualPattern>& patterns) {
+std::vector<std::size_t> suspects_of(const std::vector<diagnosis::ResidualPattern>& patterns) {
   std::vector<std::size_t> suspects(patterns.size());
   std::iota(suspects.begin(), suspects.end(), std::size_t{0});
   std::ranges::stable_sort(suspects, std::greater(), [&](std::size_t i) {
-    const pose::ResidualPattern& pattern = patterns[i];
+    const diagnosis::ResidualPattern& pattern = patterns[i];
     return (pattern.found() ? 1 : 1e-9) * static_cast<double>(pattern.count) * pattern.systematic *
            pattern.systematic;
   });
   return suspects;
 }
 
-std::vector<pose::ResidualPattern> patterns_of(const pose::TrackedPhotographs& photographs,
-                                               const std::vector<Errors>& by_camera) {
-  std::vector<pose::ResidualPattern> patterns;
+std::vector<diagnosis::ResidualPattern> patterns_of(
+    const diagnosis::TrackedPhotographs& photographs, const std::vector<Errors>& by_camera) {
+  std::vector<diagnosis::ResidualPattern> patterns;
   for (std::size_t i = 0; i < by_camera.size(); ++i) {
     const CameraModel& model = photographs.cameras[i];
-    patterns.push_back(
-        pose::residual_pattern(by_camera[i].pixels, by_camera[i].freed, model.width, model.height));
+    patterns.push_back(diagnosis::residual_pattern(by_camera[i].pixels, by_camera[i].freed,
+                                                   model.width, model.height));
   }
   return patterns;
 }
@@ -139,18 +139,18 @@ Data photographs_of(const TrackedScene& tracked, const std::vector<std::size_t>&
     Data data = errors_of(by_image[i]);
     data["number"] = numbers[tracked.numbers[i]];
     data["camera"] = camera;
-    data["grid"] = grid_of(pose::residual_pattern(by_image[i].pixels, by_image[i].stated,
-                                                  model.width, model.height, kColumnsOfPhotograph));
+    data["grid"] = grid_of(diagnosis::residual_pattern(
+        by_image[i].pixels, by_image[i].stated, model.width, model.height, kColumnsOfPhotograph));
     all.push_back(std::move(data));
   }
   return all;
 }
 
-void add_causes(const pose::TrackedPhotographs& photographs, const Vectors& freed,
-                const std::vector<pose::ResidualPattern>& patterns, Data& data) {
+void add_causes(const diagnosis::TrackedPhotographs& photographs, const Vectors& freed,
+                const std::vector<diagnosis::ResidualPattern>& patterns, Data& data) {
   data["causes"] = Data::array();
-  if (std::ranges::none_of(patterns, &pose::ResidualPattern::found)) return;
-  const auto causes = pose::residual_causes(photographs, freed, suspects_of(patterns));
+  if (std::ranges::none_of(patterns, &diagnosis::ResidualPattern::found)) return;
+  const auto causes = diagnosis::residual_causes(photographs, freed, suspects_of(patterns));
   for (std::size_t k = 0; k < std::min(causes.size(), kShownCauses); ++k)
     data["causes"].push_back(cause_data(causes[k]));
 }
@@ -159,8 +159,8 @@ void add_causes(const pose::TrackedPhotographs& photographs, const Vectors& free
 
 Data residual_data(const io::SceneWithCameras& scene, const std::filesystem::path& folder) {
   const TrackedScene tracked = read_tracks(scene, folder);
-  const pose::TrackedPhotographs& photographs = tracked.photographs;
-  const pose::ResidualVectors vectors = pose::residual_vectors(photographs);
+  const diagnosis::TrackedPhotographs& photographs = tracked.photographs;
+  const diagnosis::ResidualVectors vectors = diagnosis::residual_vectors(photographs);
   std::vector<Errors> by_camera(photographs.cameras.size()), by_image(photographs.images.size());
   Errors all;
   for (std::size_t i = 0; i < photographs.observations.size(); ++i) {
@@ -169,7 +169,7 @@ Data residual_data(const io::SceneWithCameras& scene, const std::filesystem::pat
     for (Errors* const errors : {&by_camera[camera], &by_image[observation.image], &all})
       errors->add(observation.pixel, vectors.freed[i], vectors.stated[i]);
   }
-  const std::vector<pose::ResidualPattern> patterns = patterns_of(photographs, by_camera);
+  const std::vector<diagnosis::ResidualPattern> patterns = patterns_of(photographs, by_camera);
   Data data = errors_of(all);
   data["cameras"] = Data::array();
   for (std::size_t i = 0; i < patterns.size(); ++i)
@@ -177,7 +177,7 @@ Data residual_data(const io::SceneWithCameras& scene, const std::filesystem::pat
   data["photographs"] = photographs_of(tracked, numbers_of(scene.scene), by_image);
   add_causes(photographs, vectors.freed, patterns, data);
   log_info("Reprojection errors: {:.3f} px (RMS); {} of {} cameras show a pattern",
-           rms_of(all.stated), std::ranges::count_if(patterns, &pose::ResidualPattern::found),
+           rms_of(all.stated), std::ranges::count_if(patterns, &diagnosis::ResidualPattern::found),
            patterns.size());
   return data;
 }

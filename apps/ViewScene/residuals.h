@@ -12,10 +12,11 @@ namespace axial::apps {
 // The part "residuals" of data/scene.js, for the observations of the COLMAP model in `folder`:
 // - observations, unseen (without image), rms and, with the poses freed, rms_freed [px].
 // - cameras: for each pair of lens and port: its numbers of photographs, errors, the judgement of
-//   pose::ResidualPattern, and its grid. Errors of the grid have the pose of each photograph freed.
+//   diagnosis::ResidualPattern, and its grid. Errors of the grid have the pose of each photograph
+//   freed.
 // - photographs: for each its number in "cameras" of the scene, errors, and its grid. Errors are
 //   those with the poses of the scene.
-// - causes: pose::residual_causes(), if a camera shows a pattern.
+// - causes: diagnosis::residual_causes(), if a camera shows a pattern.
 // A cell of a grid is a list: count, mean x, mean y, standard error, RMS [px].
 // Errors as for read_tracks().
 nlohmann::ordered_json residual_data(const io::SceneWithCameras& scene,

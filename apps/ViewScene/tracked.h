@@ -6,14 +6,14 @@
 #include <filesystem>
 #include <vector>
 
+#include "diagnosis/residuals.h"
 #include "io/openmvs/scene_with_cameras.h"
-#include "pose/residuals.h"
 
 namespace axial::apps {
 
 struct TrackedScene {
   // In the frame of the scene. Images with equal lens, port and name of the port share a camera.
-  pose::TrackedPhotographs photographs;
+  diagnosis::TrackedPhotographs photographs;
   std::vector<std::size_t> numbers;  // of the images of `photographs`: index into Scene::images
 };
 

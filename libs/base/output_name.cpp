@@ -47,9 +47,8 @@ void refuse_other_format(const fs::path& path, const std::string& option) {
     fail("{} {}: {} files are not written", option, path.string(), extension);
 }
 
-fs::path output_or(const CommonOptions& common, const std::string& given, const fs::path& otherwise,
-                   const std::string& option) {
-  if (!given.empty()) return output_in_working_folder(common, given, option);
+fs::path output_or(const fs::path& given, const fs::path& otherwise, const std::string& option) {
+  if (!given.empty()) return given;
   refuse_control_characters(otherwise, option);
   return otherwise;
 }

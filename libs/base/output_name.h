@@ -33,10 +33,9 @@ void refuse_control_characters(const std::filesystem::path& path, const std::str
 // writes (.stl, .las and others): the user expects this format. `option`: as above.
 void refuse_other_format(const std::filesystem::path& path, const std::string& option);
 
-// Returns the path of an output: output_in_working_folder() (base/program.h) of `given`, the value
-// of `option`, or `otherwise` if `given` is empty. Errors as for output_in_working_folder(). In
-// addition, `otherwise` must not contain control characters.
-std::filesystem::path output_or(const CommonOptions& common, const std::string& given,
+// Returns `given`, the path of an output that parse_options() took from the value of `option`, or
+// `otherwise` if `given` is empty. Throws an Error if `otherwise` contains control characters.
+std::filesystem::path output_or(const std::filesystem::path& given,
                                 const std::filesystem::path& otherwise, const std::string& option);
 
 // Returns in_working_folder() for a folder to write, the value of `option`. An empty path stays

@@ -10,6 +10,7 @@
 #include <cctype>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <set>
 #include <sstream>
 #include <typeinfo>
@@ -20,6 +21,7 @@
 #include "base/log_file.h"
 #include "base/message.h"
 #include "base/newer_options.h"
+#include "base/option_values.h"
 #include "base/out_of_memory.h"
 #include "base/output_name.h"
 #include "base/standard_streams.h"
@@ -61,14 +63,41 @@ std::string default_text(const T& value) {
     return fmt::format("{}", value);
 }
 
+// The type of the text of an option, from which the type T of its target is made.
 template <class T>
-po::typed_value<T>* bound(const Option& option, T* target) {
-  po::typed_value<T>* value = po::value(target);
-  if constexpr (std::is_same_v<T, std::vector<std::string>>) {
+struct Given {
+  using type = T;
+};
+template <>
+struct Given<fs::path> {
+  using type = std::string;
+};
+template <>
+struct Given<std::vector<fs::path>> {
+  using type = std::vector<std::string>;
+};
+template <class T>
+struct Given<std::optional<T>> {
+  using type = T;
+};
+
+// Binds an option to its target. A target of another type than the text gets its value by a
+// notifier.
+template <class T>
+auto bound(const Option& option, T* target) {
+  using Text = typename Given<T>::type;
+  constexpr bool kIsList = std::is_same_v<Text, std::vector<std::string>>;
+  po::typed_value<Text>* value = po::value<Text>();
+  value->notifier([target](const Text& text) {
+    if constexpr (kIsList)
+      target->assign(text.begin(), text.end());
+    else
+      *target = text;
+  });
+  if constexpr (kIsList)
     value->composing();
-  } else if (option.shows_default) {
-    value->default_value(*target, default_text(*target));
-  }
+  else if constexpr (std::is_same_v<Text, T>)
+    if (option.shows_default) value->default_value(*target, default_text(*target));
   if constexpr (std::is_same_v<T, bool>)
     if (option.is_switch) value->implicit_value(true);
   return value;
@@ -284,6 +313,23 @@ void print_help(const ProgramOptions& program) {
   std::cout << program.name << ": " << program.description << "\n\n" << shown << std::flush;
 }
 
+// The options of the settings in the tables of the program.
+SettingNames options_of_settings(const ProgramOptions& program) {
+  std::map<std::string, std::string, std::less<>> names{{"working_folder", "--working-folder"}};
+  for (const OptionList* list : {&program.visible, &program.hidden})
+    for (const Option& option : list->options()) {
+      std::string field = option.long_name();
+      std::ranges::replace(field, '-', '_');
+      names.emplace(std::move(field), "--" + option.long_name());
+      for (const OptionSetting& setting : option.settings)
+        names[setting.name] = "--" + option.long_name() + setting.value;
+    }
+  return [names = std::move(names)](std::string_view setting) {
+    const auto found = names.find(setting);
+    return found == names.end() ? std::string(setting) : found->second;
+  };
+}
+
 }  // namespace
 
 bool given(const ParsedOptions& parsed, const std::string& name) {
@@ -332,6 +378,8 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
     fail("command line: {}", as_message(error.what()));
   }
   apply(parsed.common);
+  parsed.option_of = options_of_settings(program);
+  take_values(std::array{&program.visible, &program.hidden}, parsed);
   parsed.run = true;
   return parsed;
 }

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/option_list.h"
+#include "base/setting_names.h"
 
 namespace axial {
 
@@ -46,7 +47,11 @@ struct ProgramOptions {
 struct ParsedOptions {
   CommonOptions common;
   std::set<std::string> given;  // long names of the options on the command line or in the cfg file
-  bool run = false;             // false: the program must do nothing more and exit with exit_code
+  // Returns the option that sets a setting of a library ("--mask-path" for "mask_folder"), or the
+  // setting itself if no option does. A setting is a field, or a field with a value (OptionSetting
+  // in base/option_list.h).
+  SettingNames option_of = own_name;
+  bool run = false;  // false: the program must do nothing more and exit with exit_code
   int exit_code = 0;
 };
 
@@ -64,8 +69,8 @@ struct ParsedOptions {
 //     --input-file is absent, even after -h.)
 //   - The program declares --input-file, but the option is absent: prints the help. The exit code
 //     is 1.
-// Throws an Error for an unknown option, a malformed value, a missing value, a value out of range,
-// or an unusable working folder, cfg file or log file.
+// Throws an Error for an unknown option, a malformed value, a missing value, a value that breaks a
+// rule of the table (base/option_list.h), or an unusable working folder, cfg file or log file.
 ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOptions& program);
 
 // True if the user gave the option with the long name `name` on the command line or in the cfg

@@ -4,7 +4,7 @@
 // other names.
 #pragma once
 
-#include <span>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -12,23 +12,11 @@ namespace axial {
 
 // A function that returns the words by which a message calls `setting`. `setting` is the name of a
 // field or of a parameter ("max_memory"), or this name with a value ("make_maps false").
-using SettingNames = std::string (*)(std::string_view setting);
+using SettingNames = std::function<std::string(std::string_view setting)>;
 
 // Returns `setting` itself.
 inline std::string own_name(std::string_view setting) {
   return std::string(setting);
-}
-
-// An entry of the table of name_in(): messages call `setting` by `name`.
-struct SettingName {
-  std::string_view setting, name;
-};
-
-// Returns the name of `setting` in `table`, or `setting` itself if the table does not contain it.
-inline std::string name_in(std::span<const SettingName> table, std::string_view setting) {
-  for (const SettingName& entry : table)
-    if (entry.setting == setting) return std::string(entry.name);
-  return own_name(setting);
 }
 
 }  // namespace axial

@@ -7,7 +7,7 @@
 
 namespace axial {
 
-// The line that --version prints, for example "DensifyPointCloud 0.1.0, commit 1ca1f70, instruction
+// The line that --version prints, for example "DensifyPointCloud 0.2.0, commit 1ca1f70, instruction
 // sets: SSE2, AVX2, AVX-512". It consists of the name of the program, the version (project(VERSION)
 // in CMakeLists.txt), the commit that last changed the sources, and the instruction sets for which
 // matching is compiled. A "+" after the commit means that the sources have changes that are not

@@ -25,32 +25,32 @@ std::vector<Eigen::Vector3d> corners_of(const pose::Bundle& bundle) {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // The limit in the value's unit. The focal length has none: it stays as calibrated in air.
-double limit_of(const pose::FreeValue& value, const Limits& limits) {
+double limit_of(const pose::HousingNumber& value, const Limits& limits) {
   switch (value.quantity) {
     case pose::Quantity::angle:
       return limits.normal * value.scale;
-    case pose::Quantity::place:
+    case pose::Quantity::distance:
+    case pose::Quantity::coordinate:
       return limits.place * value.scale;
     case pose::Quantity::index:
       return limits.index * value.scale;
     case pose::Quantity::thickness:
       return limits.thickness * value.scale;
-    case pose::Quantity::focal:
-      break;
+    default:
+      return kInfinite;
   }
-  return kInfinite;
 }
 
 struct Worst {
-  pose::FreeValue value;
+  pose::HousingNumber value;
   double ratio = 0;  // standard deviation divided by its limit
 };
 
 Worst worst_of(const pose::HousingChange<double>& sigmas, const Calibration& calibration,
                const Limits& limits) {
   Worst worst;
-  for (const pose::FreeValue& value :
-       pose::free_values(calibration.camera(), sigmas, calibration.adjust)) {
+  for (const pose::HousingNumber& value :
+       pose::free_values(calibration.bundle.bundle, {&sigmas, 1}, calibration.adjust)) {
     const double ratio = value.sigma / limit_of(value, limits);
     if (!(ratio <= worst.ratio)) worst = {value, std::isnan(ratio) ? kInfinite : ratio};
   }
@@ -178,7 +178,7 @@ void require_known(const Calibration& calibration, const Limits& limits) {
   const auto& sigmas = calibration.uncertainty.camera_sigmas[0];
   const Worst worst = worst_of(sigmas, calibration, limits);
   if (worst.ratio <= 1) return;
-  const pose::FreeValue& value = worst.value;
+  const pose::HousingNumber& value = worst.value;
   std::string said = fmt::format(
       "{} photographs determine the {} to +- {:.2g} {} only, allowed is +- {:.2g}",
       calibration.views.size(), value.name, value.sigma, value.unit, limit_of(value, limits));

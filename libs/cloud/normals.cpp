@@ -2,39 +2,22 @@
 #include "cloud/normals.h"
 
 #include <algorithm>
-#include <nanoflann.hpp>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "geometry/point_tree.h"
 #include "scene/decompositions.h"
 
 namespace axial::cloud {
 namespace {
 
-// The interface that nanoflann requires of a point set.
-struct Positions {
-  const std::vector<Eigen::Vector3f>& points;
-
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i](static_cast<Eigen::Index>(axis));
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Positions>,
-                                                 Positions, 3, std::size_t>;
-
 Eigen::Vector3d smallest_component(const std::vector<Eigen::Vector3f>& points,
-                                   std::span<const std::size_t> chosen) {
+                                   std::span<const std::uint32_t> chosen) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const std::size_t i : chosen) mean += points[i].cast<double>();
+  for (const std::uint32_t i : chosen) mean += points[i].cast<double>();
   mean /= static_cast<double>(chosen.size());
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const std::size_t i : chosen) {
+  for (const std::uint32_t i : chosen) {
     const Eigen::Vector3d d = points[i].cast<double>() - mean;
     covariance += d * d.transpose();
   }
@@ -65,8 +48,8 @@ void estimate_normals(PointCloud& cloud, const Scene& scene, std::size_t neighbo
   }
   cloud.normals.assign(cloud.size(), Eigen::Vector3f(0, 0, 1));
   if (cloud.size() == 0) return;
-  const Positions positions{cloud.positions};
-  const Tree tree(3, positions, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+  const geometry::PointSet positions{cloud.positions};
+  const geometry::PointTree<> tree(3, positions, {10});
   const std::size_t count = std::min(std::max<std::size_t>(neighbours, 3), cloud.size());
   const Eigen::Vector3d middle = mean_camera(scene);
   parallel_for(
@@ -79,7 +62,7 @@ void estimate_normals(PointCloud& cloud, const Scene& scene, std::size_t neighbo
         const Eigen::Vector3d to_camera = camera - point.cast<double>();
         Eigen::Vector3d normal = to_camera.stableNormalized();
         if (count >= 3) {
-          std::vector<std::size_t> chosen(count);
+          std::vector<std::uint32_t> chosen(count);
           std::vector<float> distances(count);
           tree.knnSearch(point.data(), count, chosen.data(), distances.data());
           normal = smallest_component(cloud.positions, chosen);

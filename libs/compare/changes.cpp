@@ -148,9 +148,7 @@ class Search {
   }
 
   Eigen::Vector3d place(const Pixel& p) const {
-    const map::MapGrid& grid = facts_.grid;
-    return {grid.left + (p.x + 0.5) * grid.pixel, grid.top - (p.y + 0.5) * grid.pixel,
-            facts_.registration.motion.centre.z()};
+    return facts_.grid.centre(p.y, p.x, facts_.registration.motion.centre.z());
   }
 
   // The slope is left out: over a region, rises and falls cancel.

@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "compare/height_map.h"
 #include "compare/visibility.h"
+#include "geometry/faces.h"
 #include "geometry/surface.h"
 #include "map/geotiff.h"
 #include "map/pixel_width.h"
@@ -39,10 +40,8 @@ struct Moments {
 
 Moments moments_of(const Mesh& mesh) {
   Moments moments;
-  for (const auto& [a, b, c] : mesh.faces) {
-    const Eigen::Vector3d x = mesh.vertices[a].cast<double>(), y = mesh.vertices[b].cast<double>(),
-                          z = mesh.vertices[c].cast<double>();
-    const Eigen::Vector3d normal = 0.5 * (y - x).cross(z - x);
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const Eigen::Vector3d normal = 0.5 * geometry::area_vector(mesh, f);
     moments.normal += normal;
     moments.area += normal.norm();
   }
@@ -107,9 +106,7 @@ Maps subtract(Comparison& comparison) {
       if (std::isnan(low) || std::isnan(high)) continue;
       const Eigen::Vector2d a = slope_at(comparison.before, y, x, grid.pixel);
       const Eigen::Vector2d b = slope_at(after, y, x, grid.pixel);
-      const Eigen::Vector3d place(grid.left + (x + 0.5) * grid.pixel,
-                                  grid.top - (y + 0.5) * grid.pixel,
-                                  comparison.base + static_cast<double>(high));
+      const Eigen::Vector3d place = grid.centre(y, x, comparison.base + static_cast<double>(high));
       const Registration& registration = comparison.registration;
       comparison.difference(y, x) = high - low;
       maps.steepness(y, x) =

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/order_statistics.h"
 #include "compare/height_map.h"
-#include "evaluate/icp.h"
+#include "geometry/icp.h"
 #include "geometry/surface.h"
 
 namespace axial::compare {
@@ -45,10 +45,6 @@ map::MapGrid coarse_grid(const map::MapGrid& grid, int longest_side) {
           std::max(1, grid.rows / stride)};
 }
 
-Eigen::Vector3d place_of(const map::MapGrid& grid, int y, int x, double height) {
-  return {grid.left + (x + 0.5) * grid.pixel, grid.top - (y + 0.5) * grid.pixel, height};
-}
-
 // `base`: the height [map] above which the heights are stated.
 Samples samples_of(const cv::Mat1f& before, const cv::Mat1f& after, const map::MapGrid& grid,
                    double base, const Eigen::Vector3d& centre) {
@@ -60,7 +56,7 @@ Samples samples_of(const cv::Mat1f& before, const cv::Mat1f& after, const map::M
       if (std::isnan(low) || std::isnan(high)) continue;
       Sample sample{y,
                     x,
-                    place_of(grid, y, x, base + high) - centre,
+                    grid.centre(y, x, base + high) - centre,
                     slope_at(before, y, x, grid.pixel),
                     slope_at(after, y, x, grid.pixel),
                     1,
@@ -183,7 +179,7 @@ RigidMotion first_motion(const Mesh& before, const Mesh& after, const map::MapFr
         "the later survey has only {} vertices over the earlier one to align by, and {} are needed",
         points.size(), kLeastSamples);
   const Similarity found =
-      evaluate::refine_rigid(points, geometry::Surface(before), {.samples = 5000, .stop = 1e-4})
+      geometry::refine_rigid(points, geometry::Surface(before), {.samples = 5000, .stop = 1e-4})
           .transform;
   return {frame.axes * found.rotation * frame.axes.transpose(), frame.axes * found.translation,
           frame.origin};

@@ -58,7 +58,7 @@ Vector6d height_row(const Eigen::Vector3d& offset, const Eigen::Vector2d& slope)
 // Finds the rigid motion of `after` that aligns it with `before`. Starts from the given positions.
 // `frame`: of both meshes. `grid`: the part of the map in which both are compared.
 //
-// The first motion is that of refine_rigid() (evaluate/icp.h), by the distances of the vertices of
+// The first motion is that of refine_rigid() (geometry/icp.h), by the distances of the vertices of
 // `after` over the grid from the nearest points of `before`. As long as the positions differ much,
 // it leaves out less of steep ground than differences of heights would. If the surface does not
 // determine all six directions (see below), the given positions are the start instead, because

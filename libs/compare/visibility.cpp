@@ -32,13 +32,9 @@ class Sights {
  private:
   bool sees(std::size_t v, const Eigen::Vector3d& point) const {
     const geometry::PosedCamera& photo = survey_.photos[v];
-    refractive::Matrix23<double> jacobian;
     Eigen::Vector3d origin;  // the path of light is straight from here to the point
-    const Eigen::Vector3d x = photo.pose.to_camera(point);
-    const auto image = cameras_[v].project(x, &jacobian, &origin);
-    if (!image.visible || image.pixel.minCoeff() < 1 || image.pixel.x() > photo.camera.width - 2 ||
-        image.pixel.y() > photo.camera.height - 2)
-      return false;
+    const auto image = cameras_[v].project(photo.pose.to_camera(point), nullptr, &origin);
+    if (!image.visible || !geometry::is_in_image(photo.camera, image.pixel, 1)) return false;
     const Eigen::Vector3d from = photo.pose.to_world(origin);
     return !surface_.between(from, point, 0, std::min(1.0, slack_ / (point - from).norm()));
   }
@@ -62,9 +58,7 @@ void mark_unseen(const SeenSurvey& survey, const map::MapGrid& grid, double base
       const float height = own(y, x), beside = other(y, x);
       if (unseen(y, x) > 0 || std::isnan(height) || std::isnan(beside)) continue;
       const auto seen = [&](float at) {
-        return sights.seen({grid.left + (x + 0.5) * grid.pixel, grid.top - (y + 0.5) * grid.pixel,
-                            base + static_cast<double>(at)},
-                           least);
+        return sights.seen(grid.centre(y, x, base + static_cast<double>(at)), least);
       };
       if (!seen(height) || (beside > height && !seen(beside))) unseen(y, x) = 255;
     }

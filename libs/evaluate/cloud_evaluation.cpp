@@ -3,28 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nanoflann.hpp>
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "evaluate/sampling.h"
+#include "geometry/point_tree.h"
+#include "geometry/sampling.h"
 
 namespace axial::evaluate {
 namespace {
-
-// The interface that nanoflann requires of a point set.
-struct PointSet {
-  std::span<const Eigen::Vector3f> points;
-
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
 
 void check(const CloudOptions& options) {
   if (options.tolerances.empty()) fail("no tolerance is given");
@@ -77,10 +63,8 @@ CloudEvaluation summed_up(std::vector<float> to_truth, std::vector<float> to_rec
 
 std::vector<float> nearest_point_distances(std::span<const Eigen::Vector3f> queries,
                                            std::span<const Eigen::Vector3f> points) {
-  using Distance = nanoflann::L2_Simple_Adaptor<float, PointSet, double>;
-  using Tree = nanoflann::KDTreeSingleIndexAdaptor<Distance, PointSet, 3, std::uint32_t>;
-  const PointSet set{points};
-  const Tree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+  const geometry::PointSet set{points};
+  const geometry::PointTree<double> tree(3, set, {16});
   std::vector<float> distances(queries.size());
   parallel_for(
       queries.size(),
@@ -112,7 +96,7 @@ CloudEvaluation evaluate_mesh(const Mesh& mesh, const Mesh& truth, const geometr
   check(options);
   // The seed differs from that of the truth, so that a mesh that is compared with itself is not
   // sampled at the same points.
-  sampled = sample_surface(mesh, options.samples, options.seed + 1, faces);
+  sampled = geometry::sample_surface(mesh, options.samples, options.seed + 1, faces);
   Places places = draw_places(truth, surface, views, options);
   std::vector<float> found = geometry::distances_to(geometry::Surface(mesh), places.positions);
   return summed_up(geometry::distances_to(surface, sampled), std::move(found), std::move(places),

@@ -8,6 +8,7 @@
 
 #include "base/order_statistics.h"
 #include "base/parallel.h"
+#include "geometry/faces.h"
 
 namespace axial::evaluate {
 namespace {
@@ -20,12 +21,6 @@ struct Nearest {
   std::vector<float> angles;
 };
 
-Eigen::Vector3d normal_of(const Mesh& mesh, std::uint32_t face) {
-  const auto& f = mesh.faces[face];
-  const Eigen::Vector3d a = mesh.vertices[f[0]].cast<double>();
-  return (mesh.vertices[f[1]].cast<double>() - a).cross(mesh.vertices[f[2]].cast<double>() - a);
-}
-
 Nearest nearest_of(const Mesh& mesh, const MeshSamples& samples, const geometry::Surface& truth) {
   Nearest nearest{std::vector<Eigen::Vector3f>(samples.positions.size()),
                   std::vector<float>(samples.positions.size(), kNoAngle)};
@@ -34,7 +29,7 @@ Nearest nearest_of(const Mesh& mesh, const MeshSamples& samples, const geometry:
       [&](std::size_t i) {
         const geometry::ClosestPoint closest = truth.closest(samples.positions[i].cast<double>());
         nearest.places[i] = closest.point.cast<float>();
-        const Eigen::Vector3d n = normal_of(mesh, samples.faces[i]);
+        const Eigen::Vector3d n = geometry::area_vector(mesh, samples.faces[i]);
         const Eigen::Vector3d true_n = truth.face_normal(closest.face);
         if (n.isZero(0) || true_n.isZero(0)) return;
         const double angle = std::atan2(n.cross(true_n).norm(), n.dot(true_n));

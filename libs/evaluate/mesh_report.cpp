@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evaluate/mesh_report.h"
-
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "evaluate/report_rows.h"
+#include "evaluate/report.h"
 
 namespace axial::evaluate {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evaluate/parts_report.h"
-
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+
+#include "evaluate/report.h"
 
 namespace axial::evaluate {
 namespace {

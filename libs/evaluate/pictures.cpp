@@ -9,8 +9,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/order_statistics.h"
-#include "evaluate/sampling.h"
 #include "evaluate/statistics.h"
+#include "geometry/sampling.h"
 #include "scene/decompositions.h"
 
 namespace axial::evaluate {
@@ -116,7 +116,7 @@ Viewpoint viewpoint_of(const View& view, int width) {
 
 Viewpoint principal_viewpoint(std::span<const Eigen::Vector3f> positions,
                               std::span<const Eigen::Vector3f> normals, int width, int height) {
-  const auto sampled = subsample(positions, 50000, 1);
+  const auto sampled = geometry::subsample(positions, 50000, 1);
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   for (const auto& x : sampled) centre += x.cast<double>();
   centre /= static_cast<double>(std::max<std::size_t>(sampled.size(), 1));

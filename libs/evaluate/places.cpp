@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "evaluate/sampling.h"
+#include "geometry/sampling.h"
 
 namespace axial::evaluate {
 namespace {
@@ -18,7 +18,7 @@ Places seen_places(const Mesh& truth, const geometry::Surface& surface, std::spa
                    std::size_t samples, const PlaceDraw& draw) {
   Places places;
   places.drawn = samples;
-  places.positions = sample_surface(truth, samples, draw.seed, &places.faces);
+  places.positions = geometry::sample_surface(truth, samples, draw.seed, &places.faces);
   if (views.empty()) return places;
   places.views = count_views(places.positions, views, surface);
   std::size_t kept = 0;

@@ -39,7 +39,7 @@ struct PlaceDraw {
 // the samples are kept, the draw is repeated once with more samples, so that about `draw.samples`
 // are kept. The repeated draw has at most 20 * draw.samples samples, so fewer may be kept.
 // Precondition: `surface` is made from `truth`. Error if there are views but no sample is kept, or
-// as for sample_surface().
+// as for geometry::sample_surface().
 Places draw_places(const Mesh& truth, const geometry::Surface& surface, std::span<const View> views,
                    const PlaceDraw& draw);
 

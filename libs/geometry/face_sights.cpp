@@ -83,9 +83,7 @@ class Observer {
                    int tested_side = 0) const {
     Eigen::Vector3d origin;  // the path of light is straight from here to the point
     const auto image = camera_.project(posed_.pose.to_camera(point), nullptr, &origin);
-    if (!image.visible || image.pixel.minCoeff() < -0.5 ||
-        image.pixel.x() > posed_.camera.width - 0.5 || image.pixel.y() > posed_.camera.height - 0.5)
-      return 0;
+    if (!image.visible || !is_in_image(posed_.camera, image.pixel, -0.5)) return 0;
     const Eigen::Vector3d from = posed_.pose.to_world(origin);
     const double cosine = (from - point).normalized().dot(normal);
     if (cosine == 0 || std::abs(cosine) < options_.least_cosine || cosine * tested_side < 0)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/seen_part.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "base/log.h"
+#include "geometry/faces.h"
 #include "geometry/surface.h"
 
 namespace axial::geometry {
@@ -20,13 +20,6 @@ std::vector<std::uint32_t> spread_indices(std::size_t count, std::size_t most) {
   return indices;
 }
 
-// The normal of a face, whose length is twice the area.
-Eigen::Vector3d long_normal(const Mesh& mesh, std::uint32_t face) {
-  const auto& [a, b, c] = mesh.faces[face];
-  const Eigen::Vector3d from = mesh.vertices[a].cast<double>();
-  return (mesh.vertices[b].cast<double>() - from).cross(mesh.vertices[c].cast<double>() - from);
-}
-
 // The bounding box of the seen faces of the sample, grown on all sides by half of its longest side.
 // Fills the other members of `part` but `strays`.
 Eigen::AlignedBox3f look_at_sample(const Mesh& mesh, std::span<const std::uint32_t> sample,
@@ -37,7 +30,7 @@ Eigen::AlignedBox3f look_at_sample(const Mesh& mesh, std::span<const std::uint32
     if (sights.front[i] == 0 && sights.back[i] == 0) continue;
     const bool from_front = sights.front[i] > sights.back[i];
     ++(from_front ? part.front : part.back);
-    const Eigen::Vector3d normal = long_normal(mesh, sample[i]);
+    const Eigen::Vector3d normal = area_vector(mesh, sample[i]);
     part.facing += from_front ? normal : Eigen::Vector3d(-normal);
     area += normal.norm();
     for (const std::uint32_t corner : mesh.faces[sample[i]]) box.extend(mesh.vertices[corner]);

@@ -9,18 +9,12 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "geometry/faces.h"
 #include "geometry/triangle_distance.h"
 #include "scene/check_mesh.h"
 
 namespace axial::geometry {
-
 namespace {
-
-std::array<Eigen::Vector3d, 3> corners_of(const Mesh& mesh, std::uint32_t face) {
-  const auto& [a, b, c] = mesh.faces[face];
-  return {mesh.vertices[a].cast<double>(), mesh.vertices[b].cast<double>(),
-          mesh.vertices[c].cast<double>()};
-}
 
 struct Search {
   const Mesh& mesh;
@@ -153,8 +147,7 @@ ClosestPoint Surface::closest(const Eigen::Vector3d& point) const {
 }
 
 Eigen::Vector3d Surface::face_normal(std::uint32_t face) const {
-  const auto [a, b, c] = corners_of(state_->mesh, face);
-  const Eigen::Vector3d normal = (b - a).cross(c - a);
+  const Eigen::Vector3d normal = area_vector(state_->mesh, face);
   const double length = normal.norm();
   return length > 0 ? Eigen::Vector3d(normal / length) : Eigen::Vector3d::Zero();
 }

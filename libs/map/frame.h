@@ -61,6 +61,10 @@ struct MapGrid {
   int columns = 0, rows = 0;
 
   std::int64_t pixels() const { return std::int64_t{columns} * rows; }
+  // The place at the height `height` over the centre of the pixel in column x of row y [map, m].
+  Eigen::Vector3d centre(int y, int x, double height) const {
+    return {left + (x + 0.5) * pixel, top - (y + 0.5) * pixel, height};
+  }
 };
 
 // The smallest grid that contains all faces of the mesh up to a thousandth of a pixel, because

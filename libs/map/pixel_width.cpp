@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/order_statistics.h"
 #include "base/parallel.h"
+#include "geometry/faces.h"
 #include "scene/any_camera.h"
 
 namespace axial::map {
@@ -19,20 +20,14 @@ struct Place {
   Eigen::Vector3d point, normal;
 };
 
-Eigen::Vector3d corner(const Mesh& mesh, std::size_t face, std::size_t k) {
-  return mesh.vertices[mesh.faces[face][k]].cast<double>();
-}
-
 // Points at equal steps of the summed area of the faces. Inside a face, a point lies at the golden
 // ratio's multiples, which spread evenly.
 std::vector<Place> places_on(const Mesh& mesh, int count) {
   std::vector<double> until;  // area of the faces up to and with this one
   until.reserve(mesh.faces.size());
   double area = 0;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const Eigen::Vector3d a = corner(mesh, f, 0);
-    until.push_back(area += 0.5 * (corner(mesh, f, 1) - a).cross(corner(mesh, f, 2) - a).norm());
-  }
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    until.push_back(area += 0.5 * geometry::area_vector(mesh, f).norm());
   std::vector<Place> places;
   if (!(area > 0)) return places;
   for (int i = 0; i < count; ++i) {
@@ -40,8 +35,8 @@ std::vector<Place> places_on(const Mesh& mesh, int count) {
     const auto f = static_cast<std::size_t>(std::min(at - until.begin(), std::ssize(until) - 1));
     double s = std::fmod(0.7548776662466927 * i, 1), t = std::fmod(0.5698402909980532 * i, 1);
     if (s + t > 1) s = 1 - s, t = 1 - t;
-    const Eigen::Vector3d a = corner(mesh, f, 0), u = corner(mesh, f, 1) - a,
-                          v = corner(mesh, f, 2) - a;
+    const auto [a, b, c] = geometry::corners_of(mesh, f);
+    const Eigen::Vector3d u = b - a, v = c - a;
     places.push_back({a + s * u + t * v, u.cross(v).normalized()});
   }
   return places;
@@ -56,9 +51,7 @@ Look look_at(const Place& place, const PosedCamera& photo, const AnyCamera<doubl
   Eigen::Vector3d origin;
   const Eigen::Vector3d x = photo.pose.to_camera(place.point);
   const auto image = camera.project(x, &jacobian, &origin);
-  if (!image.visible || image.pixel.minCoeff() < 0 || image.pixel.x() > photo.camera.width - 1 ||
-      image.pixel.y() > photo.camera.height - 1)
-    return {};
+  if (!image.visible || !geometry::is_in_image(photo.camera, image.pixel, 0)) return {};
   const Eigen::Vector3d normal = photo.pose.rotation * place.normal;
   const double cosine = normal.dot((origin - x).normalized());
   if (!(cosine > 0)) return {};

@@ -104,22 +104,18 @@ FaceBins::FaceBins(const Mesh& mesh, const MapFrame& frame, const MapGrid& grid,
       block_size_(block_size),
       block_columns_(blocks_along(grid.columns, block_size)) {
   const int block_rows = blocks_along(grid.rows, block_size);
-  begin_.assign(static_cast<std::size_t>(block_columns_) * static_cast<std::size_t>(block_rows) + 1,
-                0);
-  const auto for_each = [&](const auto& visit) {
+  const auto blocks =
+      static_cast<std::size_t>(block_columns_) * static_cast<std::size_t>(block_rows);
+  faces_ = geometry::lists_of<std::uint32_t, std::uint64_t>(blocks, [&](const auto& add) {
     for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
       const BlockRange range = blocks_of(corners_of(mesh, f, frame, grid), grid, block_size);
       for (int y = range.y0; y <= range.y1; ++y)
         for (int x = range.x0; x <= range.x1; ++x)
-          visit(f, static_cast<std::size_t>(y) * static_cast<std::size_t>(block_columns_) +
-                       static_cast<std::size_t>(x));
+          add(static_cast<std::size_t>(y) * static_cast<std::size_t>(block_columns_) +
+                  static_cast<std::size_t>(x),
+              f);
     }
-  };
-  for_each([&](std::uint32_t, std::size_t block) { ++begin_[block + 1]; });
-  for (std::size_t b = 1; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
-  faces_.resize(begin_.back());
-  std::vector<std::uint64_t> next(begin_.begin(), begin_.end() - 1);
-  for_each([&](std::uint32_t face, std::size_t block) { faces_[next[block]++] = face; });
+  });
 }
 
 cv::Rect FaceBins::pixels(std::size_t block) const {

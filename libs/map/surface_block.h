@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/lists.h"
 #include "map/frame.h"
 #include "scene/mesh.h"
 
@@ -32,13 +33,11 @@ class FaceBins {
   FaceBins(const Mesh& mesh, const MapFrame& frame, const MapGrid& grid, int block_size);
 
   // The blocks in rows from above, and their number.
-  std::size_t blocks() const { return begin_.size() - 1; }
+  std::size_t blocks() const { return faces_.begin.size() - 1; }
   // The pixels of a block.
   cv::Rect pixels(std::size_t block) const;
   // The faces whose bounding box touches the block or a pixel beside it, in increasing order.
-  std::span<const std::uint32_t> faces(std::size_t block) const {
-    return std::span(faces_).subspan(begin_[block], begin_[block + 1] - begin_[block]);
-  }
+  std::span<const std::uint32_t> faces(std::size_t block) const { return faces_.of(block); }
 
   // The memory [bytes] of the object for this mesh and grid.
   static std::uint64_t bytes(const Mesh& mesh, const MapFrame& frame, const MapGrid& grid,
@@ -46,8 +45,7 @@ class FaceBins {
 
  private:
   int columns_, rows_, block_size_, block_columns_;
-  std::vector<std::uint64_t> begin_;  // of each block in faces_, and the end
-  std::vector<std::uint32_t> faces_;
+  geometry::Lists<std::uint32_t, std::uint64_t> faces_;
 };
 
 // The surface at samples of a block. Each pixel has `samples` x `samples` samples in a regular

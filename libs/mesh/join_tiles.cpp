@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "base/disjoint_sets.h"
-#include "mesh/point_tree.h"
+#include "geometry/point_tree.h"
 #include "mesh/tile_mesh.h"
 #include "private/seam_patch.h"
 
@@ -53,8 +53,8 @@ std::vector<std::uint32_t> counterparts(const Union& all) {
   for (const SeamEdge& edge : all.seams) middles.push_back((at[edge.from] + at[edge.to]) / 2);
   std::vector<std::uint32_t> other(all.seams.size(), kNobody);
   if (all.seams.empty()) return other;
-  const PointSet set{middles};
-  const PointTree tree(3, set, {16});
+  const geometry::PointSet set{middles};
+  const geometry::PointTree<> tree(3, set, {16});
   nanoflann::SearchParams params;
   params.sorted = false;
   std::vector<std::pair<std::uint32_t, float>> found;
@@ -94,20 +94,6 @@ void weld(Union& all, const std::vector<std::uint32_t>& other) {
   }
 }
 
-std::uint64_t directed(std::uint32_t from, std::uint32_t to) {
-  return std::uint64_t{from} << 32 | to;
-}
-
-// The directed edges of the faces for which wanted(face) holds, ascending.
-std::vector<std::uint64_t> edges_of(const Mesh& mesh, const auto& wanted) {
-  std::vector<std::uint64_t> edges;
-  for (const Face& face : mesh.faces)
-    if (wanted(face))
-      for (std::size_t k = 0; k < 3; ++k) edges.push_back(directed(face[k], face[(k + 1) % 3]));
-  std::ranges::sort(edges);
-  return edges;
-}
-
 // Marks the vertices at unmatched seam edges, and at edges that two faces pass in the same
 // direction after welding.
 std::vector<bool> faulty_vertices(const Union& all, const std::vector<std::uint32_t>& other) {
@@ -116,9 +102,11 @@ std::vector<bool> faulty_vertices(const Union& all, const std::vector<std::uint3
     at_seam[all.seams[i].from] = at_seam[all.seams[i].to] = true;
     if (other[i] == kNobody) faulty[all.seams[i].from] = faulty[all.seams[i].to] = true;
   }
-  const std::vector<std::uint64_t> edges = edges_of(all.mesh, [&](const Face& face) {
-    return std::ranges::any_of(face, [&](std::uint32_t corner) { return at_seam[corner]; });
-  });
+  std::vector<bool> beside_seam;
+  for (const Face& face : all.mesh.faces)
+    beside_seam.push_back(
+        std::ranges::any_of(face, [&](std::uint32_t corner) { return at_seam[corner]; }));
+  const std::vector<std::uint64_t> edges = directed_edges(all.mesh, beside_seam);
   for (std::size_t i = 0; i + 1 < edges.size(); ++i)
     if (edges[i] == edges[i + 1])
       faulty[edges[i] >> 32] = faulty[static_cast<std::uint32_t>(edges[i])] = true;
@@ -192,38 +180,19 @@ void mark_whole_fans(const Mesh& mesh, std::vector<bool>& taken) {
   }
 }
 
-struct Patch {
-  Mesh mesh;
-  std::vector<std::uint32_t> vertices;  // their numbers in the joined mesh
-  std::vector<bool> fixed;              // also corners of other faces
+struct Patch : MeshPart {
+  std::vector<bool> fixed;  // per vertex: also a corner of other faces
 };
 
 // Takes the faces out of `mesh`.
 Patch take_out(Mesh& mesh, const std::vector<bool>& taken) {
-  Patch patch;
-  std::vector<std::uint32_t> number(mesh.vertices.size(), kNobody);
-  std::vector<Face> rest;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    if (!taken[f]) {
-      rest.push_back(mesh.faces[f]);
-      continue;
-    }
-    Face face = mesh.faces[f];
-    for (std::uint32_t& corner : face) {
-      if (number[corner] == kNobody) {
-        number[corner] = static_cast<std::uint32_t>(patch.vertices.size());
-        patch.vertices.push_back(corner);
-        patch.mesh.vertices.push_back(mesh.vertices[corner]);
-      }
-      corner = number[corner];
-    }
-    patch.mesh.faces.push_back(face);
-  }
-  mesh.faces = std::move(rest);
-  patch.fixed.assign(patch.vertices.size(), false);
+  Patch patch{part_of(mesh, taken), {}};
+  std::size_t f = 0;
+  std::erase_if(mesh.faces, [&](const Face&) { return taken[f++]; });
+  std::vector<bool> used(mesh.vertices.size(), false);
   for (const Face& face : mesh.faces)
-    for (const std::uint32_t corner : face)
-      if (number[corner] != kNobody) patch.fixed[number[corner]] = true;
+    for (const std::uint32_t corner : face) used[corner] = true;
+  for (const std::uint32_t vertex : patch.vertices) patch.fixed.push_back(used[vertex]);
   return patch;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "mesh/point_tree.h"
+#include "geometry/point_tree.h"
 
 namespace axial::mesh {
 namespace {
@@ -18,8 +18,8 @@ std::size_t enough_points(std::size_t faces) {
 }
 
 std::vector<float> distances_to_points(const Mesh& mesh, std::span<const Eigen::Vector3f> points) {
-  const PointSet set{points};
-  const PointTree tree(3, set);
+  const geometry::PointSet set{points};
+  const geometry::PointTree<> tree(3, set);
   std::vector<float> distances(mesh.faces.size());
   parallel_for(
       distances.size(),

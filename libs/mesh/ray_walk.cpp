@@ -6,17 +6,12 @@
 
 namespace axial::mesh {
 
-Stars::Stars(const Tetrahedra& tetrahedra, std::size_t points) : begin_(points + 1, 0) {
-  for (const Tetrahedra::Four& corners : tetrahedra.corners)
-    for (const std::uint32_t corner : corners)
-      if (corner != Tetrahedra::kInfinity) ++begin_[corner + 1];
-  for (std::size_t i = 0; i < points; ++i) begin_[i + 1] += begin_[i];
-  cells_.resize(begin_[points]);
-  std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-  for (std::size_t cell = 0; cell < tetrahedra.size(); ++cell)
-    for (const std::uint32_t corner : tetrahedra.corners[cell])
-      if (corner != Tetrahedra::kInfinity)
-        cells_[next[corner]++] = static_cast<std::uint32_t>(cell);
+Stars stars_of(const Tetrahedra& tetrahedra, std::size_t points) {
+  return geometry::lists_of(points, [&](const auto& add) {
+    for (std::uint32_t cell = 0; cell < tetrahedra.size(); ++cell)
+      for (const std::uint32_t corner : tetrahedra.corners[cell])
+        if (corner != Tetrahedra::kInfinity) add(corner, cell);
+  });
 }
 
 namespace detail {

@@ -8,26 +8,18 @@
 #include <span>
 #include <vector>
 
+#include "geometry/lists.h"
 #include "mesh/tetrahedra.h"
 
 namespace axial::mesh {
 
-// The star of every point: the tetrahedra that have the point as a corner, finite and infinite.
-class Stars {
- public:
-  // `points`: the number of points. Precondition: every corner of `tetrahedra` is below `points` or
-  // is kInfinity.
-  Stars(const Tetrahedra& tetrahedra, std::size_t points);
+// The star of every point: the indices of the tetrahedra that have the point as a corner, finite
+// and infinite, ascending. Empty if the point is no corner of any tetrahedron.
+using Stars = geometry::Lists<>;
 
-  // The indices of the tetrahedra of the star of `point`, ascending. Empty if the point is no
-  // corner of any tetrahedron. The result is valid as long as this object.
-  std::span<const std::uint32_t> of(std::size_t point) const {
-    return std::span(cells_).subspan(begin_[point], begin_[point + 1] - begin_[point]);
-  }
-
- private:
-  std::vector<std::uint32_t> begin_, cells_;
-};
+// `points`: the number of points. Precondition: every corner of `tetrahedra` is below `points` or
+// is kInfinity.
+Stars stars_of(const Tetrahedra& tetrahedra, std::size_t points);
 
 // A crossing of a ray and a facet.
 struct Crossing {

@@ -12,6 +12,21 @@
 
 namespace axial::mesh {
 
+// Some faces of a mesh. The vertices are in the order in which the faces name them.
+struct MeshPart {
+  Mesh mesh;
+  std::vector<std::uint32_t> vertices;  // one per vertex of `mesh`: its index in the whole mesh
+};
+
+// The faces that `taken` marks, in their order.
+MeshPart part_of(const Mesh& mesh, const std::vector<bool>& taken);
+
+// The directed edges (directed()) of the faces that `taken` marks, ascending.
+std::vector<std::uint64_t> directed_edges(const Mesh& mesh, const std::vector<bool>& taken);
+inline std::uint64_t directed(std::uint32_t from, std::uint32_t to) {
+  return std::uint64_t{from} << 32 | to;
+}
+
 // The faces of a mesh that belong to a tile.
 struct TileMesh {
   Mesh mesh;

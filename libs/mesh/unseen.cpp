@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "base/order_statistics.h"
 #include "base/parallel.h"
+#include "geometry/lists.h"
 #include "mesh/point_distances.h"
 #include "scene/marked_faces.h"
 
@@ -22,15 +23,7 @@ constexpr std::uint32_t kNoNeighbour = std::numeric_limits<std::uint32_t>::max()
 class FaceGraph {
  public:
   explicit FaceGraph(const Mesh& mesh)
-      : mesh_(mesh), begin_(mesh.vertices.size() + 1, 0), around_(3 * mesh.faces.size()) {
-    for (const auto& face : mesh.faces)
-      for (const std::uint32_t v : face) ++begin_[v + 1];
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) begin_[v + 1] += begin_[v];
-    std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-      for (const std::uint32_t v : mesh.faces[f])
-        around_[next[v]++] = static_cast<std::uint32_t>(f);
-    beside_.resize(mesh.faces.size());
+      : mesh_(mesh), around_(geometry::faces_of_vertices(mesh)), beside_(mesh.faces.size()) {
     parallel_for(
         beside_.size(),
         [&](std::size_t f) {
@@ -41,9 +34,7 @@ class FaceGraph {
   }
 
   // The faces with the corner `vertex`, ascending.
-  std::span<const std::uint32_t> around(std::uint32_t vertex) const {
-    return {around_.data() + begin_[vertex], around_.data() + begin_[vertex + 1]};
-  }
+  std::span<const std::uint32_t> around(std::uint32_t vertex) const { return around_.of(vertex); }
   // The face at the other side of the edge that begins at corner `k`, or kNoNeighbour.
   std::uint32_t beside(std::uint32_t face, std::size_t k) const { return beside_[face][k]; }
   std::size_t corner_at(std::uint32_t face, std::uint32_t vertex) const {
@@ -64,7 +55,7 @@ class FaceGraph {
   }
 
   const Mesh& mesh_;
-  std::vector<std::uint32_t> begin_, around_;
+  geometry::Lists<> around_;
   std::vector<std::array<std::uint32_t, 3>> beside_;
 };
 

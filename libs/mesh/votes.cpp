@@ -99,7 +99,7 @@ Votes cast_votes(const Tetrahedra& tetrahedra, const MergedPoints& points, const
   votes.outside.assign(tetrahedra.size(), 0);
   votes.inside.assign(tetrahedra.size(), 0);
   votes.facets.assign(tetrahedra.size(), {0, 0, 0, 0});
-  const Stars stars(tetrahedra, points.size());
+  const Stars stars = stars_of(tetrahedra, points.size());
   in_parts(points.size(), progress, [&](std::size_t i) {
     if (stars.of(i).empty()) return;
     for_each_ray(points, i, rays, options,

@@ -125,18 +125,12 @@ std::optional<Pose> best_of_samples(const std::vector<Sight>& sights,
   return best;
 }
 
-// The reprojection error of a sighting [px]; infinite if the point has no image.
-double error_of(const PhotographCamera& camera, const Pose& pose, const Sighting& sighting) {
-  const PhotographImage image = camera.image(pose.to_camera(sighting.point));
-  if (!image.visible) return std::numeric_limits<double>::infinity();
-  return (image.pixel - sighting.pixel).norm();
-}
-
 std::vector<std::size_t> inliers_of(const PhotographCamera& camera, const Pose& pose,
                                     std::span<const Sighting> sightings, double max_error) {
   std::vector<std::size_t> inliers;
   for (std::size_t i = 0; i < sightings.size(); ++i)
-    if (error_of(camera, pose, sightings[i]) <= max_error) inliers.push_back(i);
+    if (reprojection_error(camera, pose, sightings[i].point, sightings[i].pixel) <= max_error)
+      inliers.push_back(i);
   return inliers;
 }
 

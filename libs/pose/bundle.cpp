@@ -9,17 +9,6 @@
 #include "base/parallel.h"
 
 namespace axial::pose {
-namespace {
-
-double error_of(const PhotographCamera& camera, const Pose& pose, const Eigen::Vector3d& point,
-                const Observation& observation) {
-  const PhotographImage image = camera.image(pose.to_camera(point));
-  if (!image.visible) return std::numeric_limits<double>::infinity();
-  return (image.pixel - observation.pixel).norm();
-}
-
-}  // namespace
-
 std::vector<PhotographCamera> cameras_now(const Bundle& bundle) {
   std::vector<PhotographCamera> cameras;
   cameras.reserve(bundle.cameras.size());
@@ -41,14 +30,52 @@ std::vector<std::size_t> observations_by_image(const Bundle& bundle) {
   return counts;
 }
 
+std::vector<std::vector<std::size_t>> observations_of_each(
+    std::span<const Observation> observations, std::size_t Observation::*of, std::size_t count) {
+  std::vector<std::vector<std::size_t>> lists(count);
+  for (std::size_t i = 0; i < observations.size(); ++i) lists[observations[i].*of].push_back(i);
+  return lists;
+}
+
+Bundle most_observed(const Bundle& bundle, std::size_t most, std::size_t least,
+                     const std::function<bool(std::size_t image)>& takes) {
+  std::vector<std::size_t> seen(bundle.points.size()), order;
+  for (const Observation& observation : bundle.observations)
+    if (takes(observation.image)) ++seen[observation.point];
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (seen[i] >= least) order.push_back(i);
+  std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return seen[i]; });
+  order.resize(std::min(order.size(), most));
+  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> place(seen.size(), kNone);
+  Bundle part{bundle.cameras, bundle.images, {}, {}};
+  for (const std::size_t point : order) {
+    place[point] = part.points.size();
+    part.points.push_back(bundle.points[point]);
+  }
+  for (Observation observation : bundle.observations) {
+    if (!takes(observation.image) || place[observation.point] == kNone) continue;
+    observation.point = place[observation.point];
+    part.observations.push_back(observation);
+  }
+  return part;
+}
+
+double reprojection_error(const PhotographCamera& camera, const Pose& pose,
+                          const Eigen::Vector3d& point, const Eigen::Vector2d& pixel) {
+  const PhotographImage image = camera.image(pose.to_camera(point));
+  if (!image.visible) return std::numeric_limits<double>::infinity();
+  return (image.pixel - pixel).norm();
+}
+
 std::vector<double> reprojection_errors(const Bundle& bundle) {
   const std::vector<PhotographCamera> cameras = cameras_now(bundle);
   std::vector<double> errors(bundle.observations.size());
   const auto set_error = [&](std::size_t i) {
     const Observation& observation = bundle.observations[i];
     const BundleImage& image = bundle.images[observation.image];
-    errors[i] = error_of(cameras[image.camera], image.pose,
-                         bundle.points[observation.point].position, observation);
+    errors[i] = reprojection_error(cameras[image.camera], image.pose,
+                                   bundle.points[observation.point].position, observation.pixel);
   };
   parallel_for(errors.size(), set_error, kPointGrain);
   return errors;

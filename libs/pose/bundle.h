@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -74,9 +75,24 @@ std::size_t point_of(const Bundle& bundle, std::size_t source);
 // The number of observations in each image, in the order of Bundle::images.
 std::vector<std::size_t> observations_by_image(const Bundle& bundle);
 
+// The indices of the observations of each of `count` images or points, in ascending order. `of`:
+// &Observation::image or &Observation::point.
+std::vector<std::vector<std::size_t>> observations_of_each(
+    std::span<const Observation> observations, std::size_t Observation::*of, std::size_t count);
+
+// The part of the bundle that has the points with the most observations in the images for which
+// `takes` is true: at most `most` points, those with the most observations first, and only points
+// with `least` observations or more. All cameras and images stay.
+Bundle most_observed(const Bundle& bundle, std::size_t most, std::size_t least,
+                     const std::function<bool(std::size_t image)>& takes);
+
+// The reprojection error [px of the photograph] of a point [world] at `pixel`. Infinite if the
+// point has no image (PhotographImage::visible is false).
+double reprojection_error(const PhotographCamera& camera, const Pose& pose,
+                          const Eigen::Vector3d& point, const Eigen::Vector2d& pixel);
+
 // The reprojection errors [px of the photograph] of all observations, in the order of the
-// observations. An error is infinite if the point has no image (PhotographImage::visible is
-// false).
+// observations.
 std::vector<double> reprojection_errors(const Bundle& bundle);
 
 // The reprojection errors [px of the photograph] in one list for each image, in the order of

@@ -2,8 +2,6 @@
 #include "pose/complete_tracks.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -80,9 +78,7 @@ class Completion {
 
 double Completion::error_of(const Feature& feature, const Eigen::Vector3d& point) const {
   const BundleImage& image = bundle_.images[feature.image];
-  const PhotographImage seen = cameras_[image.camera].image(image.pose.to_camera(point));
-  if (!seen.visible) return std::numeric_limits<double>::infinity();
-  return (seen.pixel - pixel_of(feature)).norm();
+  return reprojection_error(cameras_[image.camera], image.pose, point, pixel_of(feature));
 }
 
 // Of the points that the matches of the feature show, the one with the smallest error.

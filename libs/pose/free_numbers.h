@@ -9,17 +9,9 @@
 #include "base/option_list.h"
 #include "base/setting_names.h"
 #include "pose/adjust.h"
+#include "pose/housing_numbers.h"
 
 namespace axial::pose {
-
-// The standard deviations with which numbers were measured. 0: not stated. Distance and normal are
-// those of a flat port, the centre is that of a dome, for each of its coordinates.
-struct Sigmas {
-  double normal_degrees = 0;                       // for each of its two tilts
-  double distance = 0, centre = 0, thickness = 0;  // [m]
-  double index = 0;                                // of the refractive index of the water
-  double focal = 0;  // standard deviation of the focal length, divided by the focal length
-};
 
 // Adds the options --normal-sigma, --distance-sigma, --centre-sigma, --thickness-sigma and
 // --index-sigma, bound to `sigmas`, which must exist until parse_options() has returned. The
@@ -27,17 +19,16 @@ struct Sigmas {
 // itself.
 void declare_sigmas(OptionList& list, Sigmas& sigmas);
 
-// The standard deviations of numbers that were measured with a ruler, and of a lens and of water
-// that were not calibrated for the dive: 3 degrees, 5 mm, 0.5 mm for the thickness, 0.004, 0.5 %.
-Sigmas ruler_sigmas();
+// The unknowns of a camera with a port of this kind: the numbers whose standard deviations
+// `measured` states are free and have these standard deviations. All others are fixed.
+Unknowns unknowns_with(PortKind kind, const Sigmas& measured);
 
 // Sets the unknowns of `adjust` (Unknowns, of_domes and of_air), whose other members are only read,
-// from
-// `refine`, a comma-separated list of the words normal, distance, centre (or center), thickness,
-// index and focal. An empty list frees no number. `normal` and `distance` apply to flat ports,
-// `centre` applies to domes, and the other words apply to all cameras. The standard deviations of
-// `sigmas` become Unknowns::prior_sigma. Where `sigmas` states none, BundleCamera::stated_sigma
-// applies.
+// from `refine`, a comma-separated list of the words normal, distance, centre (or center),
+// thickness, index and focal. An empty list frees no number. `normal` and `distance` apply to flat
+// ports, `centre` applies to domes, and the other words apply to all cameras. The standard
+// deviations of `sigmas` become Unknowns::prior_sigma. Where `sigmas` states none,
+// BundleCamera::stated_sigma applies.
 //
 // Throws an Error in these cases:
 // - The list has an unknown word.
@@ -72,32 +63,11 @@ void set_estimated_numbers(const std::string& refine, const Sigmas& sigmas, cons
 // flat port, "centre" for a dome.
 std::string place_words(const refractive::Port<double>& port);
 
-// The kind of a number. place: a length of the port's position, that is, a distance or a coordinate
-// of a centre.
-enum class Quantity { angle, place, index, thickness, focal };
-
-// One number of a camera, for reports.
-struct FreeValue {
-  std::size_t number = 0;  // index of the number in housing_change.h
-  Quantity quantity = Quantity::place;
-  std::string name, unit;     // for example "distance" and "mm"; a number without unit: ""
-  double now = 0, sigma = 0;  // present value and its standard deviation [unit]
-  double scale = 1;           // factor from the unit of housing_change.h to `unit`: 1000 for mm
-  // The measured value and its standard deviation [unit]; 0: not measured.
-  double before = 0, sigma_before = 0;
-
-  // True if the photographs say more about the value than its measurement: `sigma` is less than
-  // half of `sigma_before`, or the value was not measured. False if the measured value was kept.
-  bool by_photographs() const {
-    return !(sigma_before > 0) || (now != before && sigma < sigma_before / 2);
-  }
-};
-
-// The free numbers of `camera` with their present values and their standard deviations, by
-// ascending FreeValue::number. The value of the focal length is the factor from the measured to the
-// present focal length. `options` tells which numbers are free. `sigmas`: the entry of
-// Uncertainty::camera_sigmas for this camera.
-std::vector<FreeValue> free_values(const BundleCamera& camera, const HousingChange<double>& sigmas,
-                                   const AdjustOptions& options);
+// The free numbers of the cameras, by camera and ascending HousingNumber::number. The value of a
+// focal length is the factor from the measured to the present focal length. `sigmas`: the standard
+// deviations of the numbers of each camera (Uncertainty::camera_sigmas). Empty: all are 0.
+std::vector<HousingNumber> free_values(const Bundle& bundle,
+                                       std::span<const HousingChange<double>> sigmas,
+                                       const AdjustOptions& options);
 
 }  // namespace axial::pose

@@ -12,53 +12,31 @@
 namespace axial::pose {
 namespace {
 
-// Connected components of the graph of images and points with observations as edges.
-class Connected {
- public:
-  explicit Connected(const Bundle& bundle)
-      : sets_(bundle.images.size() + bundle.points.size()), images_(bundle.images.size()) {
-    for (const Observation& observation : bundle.observations)
-      sets_.join(observation.image, images_ + observation.point);
-  }
-
-  bool images(std::size_t a, std::size_t b) { return sets_.root(a) == sets_.root(b); }
-  bool points(std::size_t a, std::size_t b) { return images(images_ + a, images_ + b); }
-
- private:
-  DisjointSets<std::size_t> sets_;  // of the images, and of the points after them
-  std::size_t images_;
-};
-
-constexpr const char* kNoChain = "no chain of points connects the two ends";
-
 std::string left_out(const BundleImage& image) {
   return fmt::format("image '{}' is left out: too few of its observations fit", image.name);
 }
 
-std::optional<std::string> why_lost_between_images(const Bundle& bundle,
-                                                   const KnownDistance& known) {
-  const std::vector<std::size_t> counts = observations_by_image(bundle);
-  for (const std::size_t image : {known.first, known.second})
-    if (counts[image] == 0) return left_out(bundle.images[image]);
-  if (!Connected(bundle).images(known.first, known.second)) return kNoChain;
-  return {};
-}
-
-std::optional<std::string> why_lost_between_points(const Bundle& bundle,
-                                                   const KnownDistance& known) {
-  std::vector<std::size_t> ends;
-  for (const std::size_t source : {known.first, known.second}) {
-    const auto point = std::ranges::find(bundle.points, source, &BundlePoint::source);
-    const auto index = static_cast<std::size_t>(point - bundle.points.begin());
-    if (std::ranges::find(bundle.observations, index, &Observation::point) ==
-        bundle.observations.end())
-      return fmt::format(
-          "point {} is left out: fewer than two of its observations fit, or their angle is too "
-          "small",
-          source);
-    ends.push_back(index);
+std::optional<std::string> why_lost(const Bundle& bundle, const KnownDistance& known) {
+  const bool images = known.between == KnownDistance::Between::images;
+  // Connected components of the graph of images and points with observations as edges. Points are
+  // numbered after images.
+  DisjointSets<std::size_t> sets(bundle.images.size() + bundle.points.size());
+  for (const Observation& observation : bundle.observations)
+    sets.join(observation.image, bundle.images.size() + observation.point);
+  std::vector<std::size_t> roots;
+  for (const std::size_t end : {known.first, known.second}) {
+    const auto point = std::ranges::find(bundle.points, end, &BundlePoint::source);
+    const auto index = images ? end : static_cast<std::size_t>(point - bundle.points.begin());
+    const auto of = images ? &Observation::image : &Observation::point;
+    if (std::ranges::find(bundle.observations, index, of) == bundle.observations.end())
+      return images ? left_out(bundle.images[end])
+                    : fmt::format(
+                          "point {} is left out: fewer than two of its observations fit, or their "
+                          "angle is too small",
+                          end);
+    roots.push_back(sets.root(images ? index : bundle.images.size() + index));
   }
-  if (!Connected(bundle).points(ends[0], ends[1])) return kNoChain;
+  if (roots[0] != roots[1]) return "no chain of points connects the two ends";
   return {};
 }
 
@@ -89,12 +67,8 @@ std::vector<std::size_t> lost_positions(const Bundle& bundle, const AdjustOption
 
 std::vector<std::string> lost_knowledge(const Bundle& bundle, const AdjustOptions& options) {
   std::vector<std::string> reasons;
-  for (const KnownDistance& known : options.distances) {
-    const bool images = known.between == KnownDistance::Between::images;
-    if (auto why = images ? why_lost_between_images(bundle, known)
-                          : why_lost_between_points(bundle, known))
-      reasons.push_back(*std::move(why));
-  }
+  for (const KnownDistance& known : options.distances)
+    if (auto why = why_lost(bundle, known)) reasons.push_back(*std::move(why));
   if (auto why = why_lost_positions(bundle, options)) reasons.push_back(*std::move(why));
   return reasons;
 }

@@ -52,30 +52,6 @@ bool place_by_positions(Bundle& bundle, const std::vector<KnownPosition>& positi
   return true;
 }
 
-// A part of the bundle: the points with the most observations.
-Bundle sample(const Bundle& bundle) {
-  std::vector<std::size_t> seen(bundle.points.size());
-  for (const Observation& observation : bundle.observations) ++seen[observation.point];
-  std::vector<std::size_t> order(seen.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return seen[a] > seen[b]; });
-  order.resize(std::min(order.size(), kTrialPoints));
-  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-  std::vector<std::size_t> place(seen.size(), kNone);
-  Bundle part{bundle.cameras, bundle.images, {}, {}};
-  for (const std::size_t point : order) {
-    place[point] = part.points.size();
-    part.points.push_back(bundle.points[point]);
-  }
-  for (Observation observation : bundle.observations) {
-    if (place[observation.point] == kNone) continue;
-    observation.point = place[observation.point];
-    part.observations.push_back(observation);
-  }
-  return part;
-}
-
 // The cost that remains after a short adjustment of `trial` at another scale.
 double trial_cost(Bundle trial, double scale) {
   scale_places(trial, scale);
@@ -91,7 +67,7 @@ double trial_cost(Bundle trial, double scale) {
 }
 
 double best_scale(const Bundle& bundle) {
-  const Bundle part = sample(bundle);
+  const Bundle part = most_observed(bundle, kTrialPoints, 0, [](std::size_t) { return true; });
   const double distance = median_distance(part);
   double best = 1, least = std::numeric_limits<double>::infinity();
   for (const double metres : kTrialDistances) {

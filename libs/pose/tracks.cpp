@@ -30,10 +30,7 @@ std::vector<Ray> world_rays(const Bundle& bundle) {
 }
 
 std::vector<std::vector<std::size_t>> observations_by_point(const Bundle& bundle) {
-  std::vector<std::vector<std::size_t>> lists(bundle.points.size());
-  for (std::size_t i = 0; i < bundle.observations.size(); ++i)
-    lists[bundle.observations[i].point].push_back(i);
-  return lists;
+  return observations_of_each(bundle.observations, &Observation::point, bundle.points.size());
 }
 
 std::vector<Ray> rays_of(std::span<const std::size_t> list, const std::vector<Ray>& rays) {

@@ -73,7 +73,7 @@ class ReferenceView {
   const Shape& shape_;
   std::vector<Eigen::Vector3f> rays_;  // of vertices, in the mesh's frame
   Raster raster_;
-  Lists pixels_;
+  geometry::Lists<> pixels_;
   cv::Mat2f corners_;  // Barycentric of every pixel with a face
   cv::Mat1f picture_;
   cv::Mat1b mask_;

@@ -92,21 +92,14 @@ Barycentric barycentric(const VertexImage& a, const VertexImage& b, const Vertex
   return {(px * acy - py * acx) * inverse, (abx * py - aby * px) * inverse};
 }
 
-Lists pixels_of_faces(const Raster& raster, std::size_t faces) {
-  Lists lists;
-  lists.begin.assign(faces + 1, 0);
-  for (const std::int32_t bits : raster.face_bits)
-    if (const auto f = static_cast<std::uint32_t>(bits); f != kNoFace) ++lists.begin[f + 1];
-  for (std::size_t f = 0; f < faces; ++f) lists.begin[f + 1] += lists.begin[f];
-  lists.item.resize(lists.begin.back());
-  std::vector<std::uint32_t> next(lists.begin.begin(), lists.begin.end() - 1);
-  std::uint32_t pixel = 0;
-  for (const std::int32_t bits : raster.face_bits) {
-    if (const auto f = static_cast<std::uint32_t>(bits); f != kNoFace)
-      lists.item[next[f]++] = pixel;
-    ++pixel;
-  }
-  return lists;
+geometry::Lists<> pixels_of_faces(const Raster& raster, std::size_t faces) {
+  return geometry::lists_of(faces, [&](const auto& add) {
+    std::uint32_t pixel = 0;
+    for (const std::int32_t bits : raster.face_bits) {
+      if (const auto f = static_cast<std::uint32_t>(bits); f != kNoFace) add(f, pixel);
+      ++pixel;
+    }
+  });
 }
 
 }  // namespace axial::refine

@@ -39,6 +39,6 @@ Barycentric barycentric(const VertexImage& a, const VertexImage& b, const Vertex
 
 // For each face, the list of the pixels that show the face. A pixel (x, y) has the number
 // y * width + x, and each list is in ascending order. `faces`: the number of faces of the mesh.
-Lists pixels_of_faces(const Raster& raster, std::size_t faces);
+geometry::Lists<> pixels_of_faces(const Raster& raster, std::size_t faces);
 
 }  // namespace axial::refine

@@ -16,7 +16,6 @@
 #include "refine/scaled_views.h"
 #include "refine/split.h"
 #include "refine/system.h"
-#include "refine/visible_area.h"
 #include "scene/check_mesh.h"
 
 namespace axial::refine {
@@ -101,11 +100,8 @@ class Refinement {
   }
 
   Sizes sizes() const {
-    Sizes sizes{mesh_.vertices.size(), mesh_.faces.size(), views_.size()};
-    for (const PosedCamera& view : views_)
-      sizes.pixels = std::max(sizes.pixels, static_cast<std::uint64_t>(view.camera.width) *
-                                                static_cast<std::uint64_t>(view.camera.height));
-    return sizes;
+    return {mesh_.vertices.size(), mesh_.faces.size(), views_.size(),
+            geometry::most_pixels(views_)};
   }
 
   void plan_memory() { kept_ = views_to_keep(sizes(), options_); }

@@ -47,8 +47,8 @@ System::System(const Mesh& mesh, const Topology& topology, const Shape& shape,
       bending_weight_(mesh.vertices.size()),
       anchor_(mesh.vertices.size()),
       stiffness_(mesh.vertices.size()),
-      off_diagonal_(topology.neighbours.item.size()),
-      cosine_(topology.neighbours.item.size()) {
+      off_diagonal_(topology.neighbours.items.size()),
+      cosine_(topology.neighbours.items.size()) {
   for_each_item(right_.size(), [&](std::size_t v) { gather(v, equations); });
   for_each_item(right_.size(), [&](std::size_t v) { add_slopes(v); });
   for_each_item(right_.size(), [&](std::size_t v) { weigh_bending(v, smoothness); });
@@ -64,7 +64,7 @@ std::size_t System::edge_to(std::size_t v, std::uint32_t neighbour) const {
 void System::gather(std::size_t v, std::span<const FaceEquations> equations) {
   constexpr std::size_t kEntry[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
   for (std::size_t e = first(v); e < last(v); ++e)
-    cosine_[e] = shape_.normals[v].dot(shape_.normals[topology_.neighbours.item[e]]);
+    cosine_[e] = shape_.normals[v].dot(shape_.normals[topology_.neighbours.items[e]]);
   for (const std::uint32_t f : topology_.faces.of(v)) {
     const auto& face = mesh_.faces[f];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -91,7 +91,7 @@ double System::slope_weight(std::size_t v, std::uint32_t neighbour) const {
 
 void System::add_slopes(std::size_t v) {
   for (std::size_t e = first(v); e < last(v); ++e) {
-    const auto weight = static_cast<float>(slope_weight(v, topology_.neighbours.item[e]));
+    const auto weight = static_cast<float>(slope_weight(v, topology_.neighbours.items[e]));
     stiffness_[v] += static_cast<double>(weight);
     off_diagonal_[e] -= weight;
   }
@@ -134,14 +134,14 @@ void System::add_anchor(std::span<const double> weight, std::span<const float> o
 double System::bend(std::size_t v, const Vector& t) const {
   double sum = 0;
   for (std::size_t e = first(v); e < last(v); ++e)
-    sum += cosine_[e] * t[topology_.neighbours.item[e]];
+    sum += cosine_[e] * t[topology_.neighbours.items[e]];
   return sum / degree(v) - t[v];
 }
 
 double System::bend_transposed(std::size_t v, const Vector& bending) const {
   double sum = -bending[v];
   for (std::size_t e = first(v); e < last(v); ++e) {
-    const std::uint32_t n = topology_.neighbours.item[e];
+    const std::uint32_t n = topology_.neighbours.items[e];
     sum += cosine_[e] * bending[n] / degree(n);
   }
   return sum;
@@ -155,7 +155,7 @@ System::Vector System::times(const Vector& t) const {
   for_each_item(t.size(), [&](std::size_t v) {
     double sum = ((1 + kDamping) * diagonal_[v] + anchor_[v] + stiffness_[v]) * t[v];
     for (std::size_t e = first(v); e < last(v); ++e)
-      sum += off_diagonal_[e] * t[topology_.neighbours.item[e]];
+      sum += off_diagonal_[e] * t[topology_.neighbours.items[e]];
     result[v] = sum + bend_transposed(v, bending);
   });
   return result;
@@ -166,7 +166,7 @@ System::Vector System::preconditioner() const {
   for_each_item(inverse.size(), [&](std::size_t v) {
     double sum = (1 + kDamping) * diagonal_[v] + anchor_[v] + stiffness_[v] + bending_weight_[v];
     for (std::size_t e = first(v); e < last(v); ++e) {
-      const std::uint32_t n = topology_.neighbours.item[e];
+      const std::uint32_t n = topology_.neighbours.items[e];
       const double share = cosine_[e] / degree(n);
       sum += bending_weight_[n] * share * share;
     }

@@ -6,26 +6,13 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "geometry/vertex_normals.h"
 
 namespace axial::refine {
 namespace {
 
-Lists faces_of_vertices(const Mesh& mesh) {
-  Lists lists;
-  lists.begin.assign(mesh.vertices.size() + 1, 0);
-  for (const auto& face : mesh.faces)
-    for (const std::uint32_t v : face) ++lists.begin[v + 1];
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) lists.begin[v + 1] += lists.begin[v];
-  lists.item.resize(3 * mesh.faces.size());
-  std::vector<std::uint32_t> next(lists.begin.begin(), lists.begin.end() - 1);
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-    for (const std::uint32_t v : mesh.faces[f])
-      lists.item[next[v]++] = static_cast<std::uint32_t>(f);
-  return lists;
-}
-
 // The other corners of the vertex's faces, each as often as it occurs, in ascending order.
-void gather_corners(const Mesh& mesh, const Lists& faces, std::size_t vertex,
+void gather_corners(const Mesh& mesh, const geometry::Lists<>& faces, std::size_t vertex,
                     std::vector<std::uint32_t>& corners) {
   corners.clear();
   for (const std::uint32_t f : faces.of(vertex))
@@ -54,12 +41,12 @@ std::vector<Eigen::Vector3f> mean_normals(std::span<const Eigen::Vector3f> norma
 
 Topology topology_of(const Mesh& mesh) {
   Topology topology;
-  topology.faces = faces_of_vertices(mesh);
+  topology.faces = geometry::faces_of_vertices(mesh);
   topology.border.assign(mesh.vertices.size(), false);
-  Lists& neighbours = topology.neighbours;
+  geometry::Lists<>& neighbours = topology.neighbours;
   neighbours.begin.reserve(mesh.vertices.size() + 1);
   neighbours.begin.push_back(0);
-  neighbours.item.reserve(3 * mesh.faces.size() + mesh.vertices.size());
+  neighbours.items.reserve(3 * mesh.faces.size() + mesh.vertices.size());
   std::vector<std::uint32_t> corners;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     gather_corners(mesh, topology.faces, v, corners);
@@ -67,31 +54,23 @@ Topology topology_of(const Mesh& mesh) {
       std::size_t end = i;
       while (end < corners.size() && corners[end] == corners[i]) ++end;
       if (end - i != 2) topology.border[v] = true;
-      neighbours.item.push_back(corners[i]);
+      neighbours.items.push_back(corners[i]);
       i = end;
     }
-    neighbours.begin.push_back(static_cast<std::uint32_t>(neighbours.item.size()));
+    neighbours.begin.push_back(static_cast<std::uint32_t>(neighbours.items.size()));
   }
   return topology;
 }
 
 Shape shape_of(const Mesh& mesh, const Topology& topology) {
   const std::size_t count = mesh.vertices.size();
-  Shape shape{std::vector<Eigen::Vector3f>(count), std::vector<float>(count),
+  Shape shape{mean_normals(geometry::vertex_normals(mesh), topology), std::vector<float>(count),
               std::vector<float>(count)};
   parallel_for(
       count,
       [&](std::size_t v) {
-        Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-        float area = 0;
-        for (const std::uint32_t f : topology.faces.of(v)) {
-          const Eigen::Vector3f twice = face_vector(mesh, mesh.faces[f]);
-          sum += twice;
-          area += twice.norm() / 6;
-        }
-        const float norm = sum.norm();
-        shape.normals[v] = norm > 0 ? Eigen::Vector3f(sum / norm) : Eigen::Vector3f::Zero();
-        shape.area[v] = area;
+        for (const std::uint32_t f : topology.faces.of(v))
+          shape.area[v] += face_vector(mesh, mesh.faces[f]).norm() / 6;
         const auto neighbours = topology.neighbours.of(v);
         float squared = 0;
         for (const std::uint32_t n : neighbours)
@@ -100,7 +79,6 @@ Shape shape_of(const Mesh& mesh, const Topology& topology) {
             neighbours.empty() ? 0 : std::sqrt(squared / static_cast<float>(neighbours.size()));
       },
       kPointGrain);
-  shape.normals = mean_normals(shape.normals, topology);
   return shape;
 }
 

@@ -6,27 +6,17 @@
 #include <span>
 #include <vector>
 
+#include "geometry/lists.h"
 #include "scene/mesh.h"
 
 namespace axial::refine {
 
-// Lists of numbers in one array, one list after the other.
-struct Lists {
-  std::vector<std::uint32_t> begin;  // list k is at [begin[k], begin[k + 1]) of `item`
-  std::vector<std::uint32_t> item;
-
-  // The numbers of one list.
-  std::span<const std::uint32_t> of(std::size_t list) const {
-    return {item.data() + begin[list], item.data() + begin[list + 1]};
-  }
-};
-
 // The neighbourhoods of the vertices. The neighbours of a vertex are the vertices to which an edge
 // leads from it.
 struct Topology {
-  Lists faces;               // for each vertex, its faces in ascending order
-  Lists neighbours;          // for each vertex, its neighbours in ascending order
-  std::vector<bool> border;  // the vertex has an edge that does not belong to exactly two faces
+  geometry::Lists<> faces;       // for each vertex, its faces in ascending order
+  geometry::Lists<> neighbours;  // for each vertex, its neighbours in ascending order
+  std::vector<bool> border;      // the vertex has an edge that does not belong to exactly two faces
 };
 
 // Precondition: check_mesh() accepts the mesh (scene/check_mesh.h).

@@ -1,37 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "texture/adjacency.h"
 
-#include <algorithm>
-#include <tuple>
+#include "geometry/edges.h"
 
 namespace axial::texture {
 
 std::uint64_t bytes_to_pair(std::uint64_t faces) {
-  // An edge of each corner with its face; a pair for every two of these edges.
-  return 3 * faces * (3 * sizeof(std::uint32_t) + sizeof(FacePair) / 2);
+  // The sides of all faces; a pair for every two of these sides.
+  return 3 * faces * (sizeof(geometry::Side) + sizeof(FacePair) / 2);
 }
 
 std::vector<FacePair> face_pairs(std::span<const std::array<std::uint32_t, 3>> faces) {
-  struct EdgeOfFace {
-    std::uint32_t from, to, face;
-    bool operator<(const EdgeOfFace& o) const {
-      return std::tie(from, to, face) < std::tie(o.from, o.to, o.face);
-    }
-  };
-  std::vector<EdgeOfFace> sides;
-  sides.reserve(3 * faces.size());
-  for (std::uint32_t f = 0; f < faces.size(); ++f)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [from, to] = std::minmax(faces[f][k], faces[f][(k + 1) % 3]);
-      if (from != to) sides.push_back({from, to, f});
-    }
-  std::sort(sides.begin(), sides.end());
+  const std::vector<geometry::Side> sides = geometry::sides_of(faces);
   std::vector<FacePair> pairs;
   pairs.reserve(sides.size() / 2);
   for (std::size_t i = 1; i < sides.size(); ++i) {
-    const EdgeOfFace &s = sides[i - 1], &t = sides[i];
-    if (s.from == t.from && s.to == t.to && s.face != t.face)
-      pairs.push_back({s.face, t.face, s.from, s.to});
+    const geometry::Side &s = sides[i - 1], &t = sides[i];
+    if (s.low == t.low && s.high == t.high && s.low != s.high && s.face != t.face)
+      pairs.push_back({s.face, t.face, s.low, s.high});
   }
   return pairs;
 }

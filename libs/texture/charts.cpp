@@ -30,15 +30,10 @@ void number_charts(std::span<const FacePair> pairs, std::span<const std::uint32_
 }
 
 void list_faces(Charts& result) {
-  result.face_begin.assign(result.charts.size() + 1, 0);
-  for (const std::uint32_t chart : result.chart_of)
-    if (chart != kNoChart) ++result.face_begin[chart + 1];
-  for (std::size_t c = 0; c < result.charts.size(); ++c)
-    result.face_begin[c + 1] += result.face_begin[c];
-  result.faces.resize(result.face_begin.back());
-  std::vector<std::uint32_t> next(result.face_begin.begin(), result.face_begin.end() - 1);
-  for (std::uint32_t f = 0; f < result.chart_of.size(); ++f)
-    if (result.chart_of[f] != kNoChart) result.faces[next[result.chart_of[f]]++] = f;
+  result.faces = geometry::lists_of(result.charts.size(), [&](const auto& add) {
+    for (std::uint32_t f = 0; f < result.chart_of.size(); ++f)
+      if (result.chart_of[f] != kNoChart) add(result.chart_of[f], f);
+  });
 }
 
 // The nodes of one chart after the other.
@@ -46,7 +41,7 @@ void make_nodes(const Mesh& mesh, Charts& result) {
   result.corners.assign(mesh.faces.size(), {});
   std::vector<std::uint32_t> vertices;
   for (std::uint32_t chart = 0; chart < result.charts.size(); ++chart) {
-    const std::span<const std::uint32_t> faces = result.faces_of(chart);
+    const std::span<const std::uint32_t> faces = result.faces.of(chart);
     vertices.clear();
     for (const std::uint32_t f : faces)
       vertices.insert(vertices.end(), mesh.faces[f].begin(), mesh.faces[f].end());

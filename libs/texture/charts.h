@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/lists.h"
 #include "scene/mesh.h"
 #include "texture/adjacency.h"
 #include "texture/views.h"
@@ -40,15 +41,7 @@ struct Charts {
   std::vector<std::uint32_t> chart_of;  // one per face; kNoChart: no view sees it
   // One per face: the indices of the nodes of its corners. No meaning for a face without chart.
   std::vector<std::array<std::uint32_t, 3>> corners;
-  // The faces with a chart, ordered by chart. The faces of chart c are at [face_begin[c],
-  // face_begin[c + 1]) of `faces`.
-  std::vector<std::uint32_t> faces;
-  std::vector<std::uint32_t> face_begin;
-
-  // The faces of a chart, in ascending order.
-  std::span<const std::uint32_t> faces_of(std::size_t chart) const {
-    return std::span(faces).subspan(face_begin[chart], face_begin[chart + 1] - face_begin[chart]);
-  }
+  geometry::Lists<> faces;  // of each chart, in ascending order
 };
 
 // Makes the charts of a labelling. `labels` contains for each face the index of its view, or

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/order_statistics.h"
 #include "base/parallel.h"
+#include "geometry/faces.h"
 #include "texture/outliers.h"
 
 namespace axial::texture {
@@ -83,7 +84,7 @@ class TileLabels {
         near.size(),
         [&](std::size_t f) {
           const std::uint32_t own = tiles_.of_face[f];
-          near[f] = own == tile || (own > tile && reach.contains(middle_of(mesh_, f)));
+          near[f] = own == tile || (own > tile && reach.contains(geometry::middle_of(mesh_, f)));
         },
         kPointGrain);
     std::vector<std::uint32_t> faces;

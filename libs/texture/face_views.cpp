@@ -84,9 +84,7 @@ std::vector<ProjectedVertex> project_vertices(const Mesh& mesh, const Camera& ca
   std::vector<ProjectedVertex> vertices(mesh.vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const auto image = camera.project(view.pose.to_camera(mesh.vertices[i].cast<double>()));
-    const bool inside = image.visible && image.pixel.x() >= 0 && image.pixel.y() >= 0 &&
-                        image.pixel.x() <= view.camera.width - 1 &&
-                        image.pixel.y() <= view.camera.height - 1;
+    const bool inside = image.visible && geometry::is_in_image(view.camera, image.pixel, 0);
     vertices[i] = {image.pixel.template cast<float>(), inside ? Sees::unknown : Sees::outside};
   }
   return vertices;
@@ -254,14 +252,10 @@ FaceViews by_face(std::size_t faces, std::vector<std::vector<SeenFace>>& of_view
 // The memory [bytes] for each view in work.
 std::uint64_t bytes_of_view(const Mesh& mesh, std::span<const View> views,
                             std::uint64_t image_bytes) {
-  std::uint64_t pixels = 0;
-  for (const View& view : views)
-    pixels = std::max(pixels, static_cast<std::uint64_t>(view.camera.width) *
-                                  static_cast<std::uint64_t>(view.camera.height));
   // Pixels and state of the vertices; the list of what the view sees, which grows; the complement
   // of the usable pixels, and its sums.
   return image_bytes + mesh.vertices.size() * 12 + mesh.faces.size() * 2 * sizeof(SeenFace) +
-         pixels * (1 + sizeof(int));
+         geometry::most_pixels(views) * (1 + sizeof(int));
 }
 
 // Collects what the views see, as long as there is memory for it, and counts it in any case.

@@ -88,7 +88,7 @@ std::vector<Eigen::Vector3f> level_globally(const Mesh& mesh, const Charts& char
   }
   // An edge inside a chart belongs to two faces, each of which adds half of its term.
   const auto half = static_cast<float>(0.5 * options.smoothness);
-  for (const std::uint32_t f : charts.faces)
+  for (const std::uint32_t f : charts.faces.items)
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t i = charts.corners[f][k], j = charts.corners[f][(k + 1) % 3];
       if (i != j) equations.add(i, j, half, Eigen::Vector3f::Zero());

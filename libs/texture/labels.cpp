@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "geometry/lists.h"
 
 namespace axial::texture {
 namespace {
@@ -22,23 +23,14 @@ struct Choice {
 };
 
 // The neighbours of each face.
-struct Neighbours {
-  std::vector<std::uint32_t> begin, faces;
-
-  Neighbours(std::size_t count, std::span<const FacePair> pairs) : begin(count + 1, 0) {
-    for (const FacePair& p : pairs) ++begin[p.a + 1], ++begin[p.b + 1];
-    for (std::size_t f = 0; f < count; ++f) begin[f + 1] += begin[f];
-    faces.resize(begin.back());
-    std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-    for (const FacePair& p : pairs) {
-      faces[next[p.a]++] = p.b;
-      faces[next[p.b]++] = p.a;
+geometry::Lists<> neighbours_of(std::size_t faces, std::span<const FacePair> pairs) {
+  return geometry::lists_of(faces, [&](const auto& add) {
+    for (const FacePair& pair : pairs) {
+      add(pair.a, pair.b);
+      add(pair.b, pair.a);
     }
-  }
-  std::span<const std::uint32_t> of(std::uint32_t face) const {
-    return std::span(faces).subspan(begin[face], begin[face + 1] - begin[face]);
-  }
-};
+  });
+}
 
 // The number of sights of each view, up to the last view that has any.
 std::vector<std::uint64_t> sights_of_views(const FaceViews& views) {
@@ -53,7 +45,7 @@ std::vector<std::uint64_t> sights_of_views(const FaceViews& views) {
 class Expansion {
  public:
   Expansion(const FaceViews& views, std::span<const FacePair> pairs, double ratio)
-      : neighbours_(views.faces(), pairs),
+      : neighbours_(neighbours_of(views.faces(), pairs)),
         label_(views.faces(), kNoView),
         cost_(views.faces(), 0),
         node_(views.faces(), -1) {
@@ -150,7 +142,7 @@ class Expansion {
     }
   }
 
-  Neighbours neighbours_;
+  geometry::Lists<> neighbours_;
   std::vector<std::uint32_t> label_;
   std::vector<int> cost_;                     // of the label
   std::vector<int> node_;                     // in the graph of an expansion; -1: none

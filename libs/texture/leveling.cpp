@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "geometry/lists.h"
 #include "texture/chart_field.h"
 
 namespace axial::texture {
@@ -17,27 +18,14 @@ struct Side {
 };
 
 // The seams of each chart.
-struct Sides {
-  std::vector<std::uint32_t> begin;
-  std::vector<Side> sides;
-
-  Sides(const Charts& charts, std::span<const Seam> seams) : begin(charts.charts.size() + 1, 0) {
-    const auto chart_of = [&](const std::array<std::uint32_t, 2>& nodes) {
-      return charts.nodes[nodes[0]].chart;
-    };
-    for (const Seam& s : seams) ++begin[chart_of(s.a) + 1], ++begin[chart_of(s.b) + 1];
-    for (std::size_t c = 0; c + 1 < begin.size(); ++c) begin[c + 1] += begin[c];
-    sides.resize(begin.back());
-    std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+geometry::Lists<Side> sides_of(const Charts& charts, std::span<const Seam> seams) {
+  return geometry::lists_of<Side>(charts.charts.size(), [&](const auto& add) {
     for (std::uint32_t s = 0; s < seams.size(); ++s) {
-      sides[next[chart_of(seams[s].a)]++] = {s, false};
-      sides[next[chart_of(seams[s].b)]++] = {s, true};
+      add(charts.nodes[seams[s].a[0]].chart, Side{s, false});
+      add(charts.nodes[seams[s].b[0]].chart, Side{s, true});
     }
-  }
-  std::span<const Side> of(std::size_t chart) const {
-    return std::span(sides).subspan(begin[chart], begin[chart + 1] - begin[chart]);
-  }
-};
+  });
+}
 
 // Everything that the correction of a chart depends on.
 struct Leveling {
@@ -53,12 +41,12 @@ struct Leveling {
 
   ChartField global_field(std::size_t chart) const {
     ChartField field(atlas.rects[chart].size());
-    for (const std::uint32_t f : charts.faces_of(chart)) {
+    for (const std::uint32_t f : charts.faces.of(chart)) {
       const auto& [a, b, c] = charts.corners[f];
       field.add_triangle({place(a, chart), place(b, chart), place(c, chart)},
                          {global[a], global[b], global[c]});
     }
-    for (const std::uint32_t f : charts.faces_of(chart))
+    for (const std::uint32_t f : charts.faces.of(chart))
       for (const std::uint32_t node : charts.corners[f])
         field.add_point(place(node, chart), global[node]);
     field.widen();
@@ -116,7 +104,7 @@ Corrections find_corrections(const Mesh& mesh, const Charts& charts, std::span<c
 void level_charts(Atlas& atlas, const Charts& charts, std::span<const Seam> seams,
                   const Corrections& corrections, const LevelingOptions& options,
                   const Budget& budget) {
-  const Sides sides(charts, seams);
+  const geometry::Lists<Side> sides = sides_of(charts, seams);
   const Leveling leveling{atlas, charts, seams, corrections.colors, corrections.global};
   const std::size_t in_flight =
       budget.items(0, bytes_of_largest_field(atlas), thread_count(), work_of(seams));

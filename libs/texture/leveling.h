@@ -11,7 +11,7 @@ namespace axial::texture {
 
 struct LevelingOptions {
   bool global = true;  // smooth corrections of whole charts (global_leveling.h)
-  bool local = true;   // corrections in a strip along the seams, see level_seams()
+  bool local = true;   // corrections in a strip along the seams, see level_charts()
   GlobalLevelingOptions global_options;
   int strip = 20;  // width of the strip [px]; the local correction reaches zero at this distance
 };

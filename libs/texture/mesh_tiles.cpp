@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "geometry/faces.h"
 
 namespace axial::texture {
 namespace {
@@ -26,13 +27,6 @@ std::uint32_t tile_at(std::span<const cloud::Tile> boxes, const Eigen::Vector3d&
 
 }  // namespace
 
-Eigen::Vector3d middle_of(const Mesh& mesh, std::size_t face) {
-  const auto& [a, b, c] = mesh.faces[face];
-  return (mesh.vertices[a].cast<double>() + mesh.vertices[b].cast<double>() +
-          mesh.vertices[c].cast<double>()) /
-         3;
-}
-
 FaceTiles divide_faces(const Mesh& mesh, std::size_t count, const Eigen::Matrix3d& axes) {
   FaceTiles tiles;
   if (count == 1) {
@@ -43,7 +37,9 @@ FaceTiles divide_faces(const Mesh& mesh, std::size_t count, const Eigen::Matrix3
   tiles.of_face.resize(mesh.faces.size());
   parallel_for(
       mesh.faces.size(),
-      [&](std::size_t face) { tiles.of_face[face] = tile_at(tiles.boxes, middle_of(mesh, face)); },
+      [&](std::size_t face) {
+        tiles.of_face[face] = tile_at(tiles.boxes, geometry::middle_of(mesh, face));
+      },
       kPointGrain);
   return tiles;
 }

@@ -21,9 +21,6 @@ struct FaceTiles {
   std::size_t count() const { return boxes.size(); }
 };
 
-// Returns the mean of the corners of a face.
-Eigen::Vector3d middle_of(const Mesh& mesh, std::size_t face);
-
 // Divides a mesh into `count` tiles with about equal numbers of vertices (make_tiles() in
 // cloud/tiles.h), with the axes `axes` (its rows). A face belongs to the tile that contains its
 // middle. Tiles without faces are possible. Precondition: `count` is at least 1, and check_mesh()

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "geometry/edges.h"
 
 namespace axial::texture {
 namespace {
@@ -27,37 +28,15 @@ struct Edges {
   std::vector<Corners> of_face;
 
   explicit Edges(const Mesh& mesh) : of_face(mesh.faces.size()) {
-    struct Use {
-      std::uint32_t from, to, face, corner;
-    };
-    std::vector<Use> uses;
-    uses.reserve(3 * mesh.faces.size());
-    list.reserve(uses.capacity());
-    for (std::uint32_t f = 0; f < mesh.faces.size(); ++f)
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const auto [from, to] = std::minmax(mesh.faces[f][k], mesh.faces[f][(k + 1) % 3]);
-        uses.push_back({from, to, f, k});
-      }
-    std::ranges::sort(uses, {},
-                      [](const Use& u) { return std::tuple(u.from, u.to, u.face, u.corner); });
-    for (std::size_t i = 0; i < uses.size(); ++i) {
-      const Use& use = uses[i];
-      if (i == 0 || use.from != uses[i - 1].from || use.to != uses[i - 1].to)
-        list.push_back({use.from, use.to, {use.face, use.face}});
-      list.back().faces[1] = use.face;
-      of_face[use.face][use.corner] = static_cast<std::uint32_t>(list.size() - 1);
-    }
+    const std::vector<geometry::Side> sides = geometry::sides_of(mesh.faces);
+    list.reserve(sides.size());
+    geometry::for_each_edge(sides, [&](std::span<const geometry::Side> edge) {
+      for (const geometry::Side& side : edge)
+        of_face[side.face][side.corner] = static_cast<std::uint32_t>(list.size());
+      list.push_back({edge[0].low, edge[0].high, {edge.front().face, edge.back().face}});
+    });
   }
 };
-
-std::vector<Eigen::Vector3f> normals_of(const Mesh& mesh) {
-  std::vector<Eigen::Vector3f> normals;
-  normals.reserve(mesh.faces.size());
-  for (const auto& [a, b, c] : mesh.faces)
-    normals.push_back(
-        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]));
-  return normals;
-}
 
 // Whether the image of the edge is too far from linear in a view.
 template <class Camera>
@@ -84,10 +63,7 @@ class EdgeTest {
  private:
   std::optional<Eigen::Vector2d> image_of(const Eigen::Vector3d& point) const {
     const auto image = camera_.project(view_.pose.to_camera(point));
-    const bool inside = image.visible && image.pixel.x() >= -0.5 && image.pixel.y() >= -0.5 &&
-                        image.pixel.x() <= view_.camera.width - 0.5 &&
-                        image.pixel.y() <= view_.camera.height - 0.5;
-    if (!inside) return {};
+    if (!image.visible || !geometry::is_in_image(view_.camera, image.pixel, -0.5)) return {};
     return image.pixel;
   }
 
@@ -98,7 +74,11 @@ class EdgeTest {
 
 std::vector<char> long_edges(const Mesh& mesh, const Edges& edges, std::span<const View> views,
                              double tolerance) {
-  const std::vector<Eigen::Vector3f> normals = normals_of(mesh);
+  std::vector<Eigen::Vector3f> normals;
+  normals.reserve(mesh.faces.size());
+  for (const auto& [a, b, c] : mesh.faces)
+    normals.push_back(
+        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]));
   std::vector<char> found(edges.list.size(), 0);
   for (const View& view : views)
     std::visit(

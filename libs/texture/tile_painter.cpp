@@ -12,10 +12,7 @@ namespace {
 
 // The most photographs that are painted at the same time.
 std::size_t painted_at_once(const Sources& sources, const Budget& budget) {
-  std::uint64_t pixels = 0;
-  for (const View& view : sources.views)
-    pixels = std::max(pixels, static_cast<std::uint64_t>(view.camera.width) *
-                                  static_cast<std::uint64_t>(view.camera.height));
+  const std::uint64_t pixels = geometry::most_pixels(sources.views);
   return budget.items(0, sources.options.image_bytes + bytes_to_paint(pixels), thread_count(),
                       "painting textures");
 }
@@ -52,7 +49,7 @@ ChartTiles give_charts(FaceTiles& tiles, const Charts& charts) {
   if (tiles.count() == 1) return result;
   std::vector<std::uint32_t> counts(tiles.count(), 0);
   for (std::size_t c = 0; c < charts.charts.size(); ++c) {
-    const std::span<const std::uint32_t> faces = charts.faces_of(c);
+    const std::span<const std::uint32_t> faces = charts.faces.of(c);
     for (const std::uint32_t f : faces) ++counts[tiles.of_face[f]];
     std::uint32_t most = tiles.of_face[faces[0]];
     for (const std::uint32_t f : faces) {

@@ -14,8 +14,8 @@
 
 #include "base/error.h"
 #include "check_program.h"
-#include "evaluate/sampling.h"
 #include "evaluate/views.h"
+#include "geometry/sampling.h"
 #include "geometry/surface.h"
 #include "io/bytes/json.h"
 #include "io/ply/ply.h"
@@ -32,7 +32,7 @@ int run(int argc, char** argv) {
   const auto views = evaluate::views_of_model(model, housing ? &*housing : nullptr);
   const geometry::Surface surface(mesh);
   std::vector<std::uint32_t> faces;
-  std::vector<Eigen::Vector3f> samples = evaluate::sample_surface(mesh, 300'000, 1, &faces);
+  std::vector<Eigen::Vector3f> samples = geometry::sample_surface(mesh, 300'000, 1, &faces);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     // More than the part of a segment next to its begin that cannot be blocked.
     const double lift = 5e-4 * (views[0].pose.centre - samples[i].cast<double>()).norm();

@@ -315,7 +315,7 @@ class WrongInput(CompareTest):
     def test_one_line_that_names_the_fault(self):
         self.refuses_each(
                 self.compare(),
-                ("--align centres: must be none or icp", "--align", "centres"),
+                ("--align centres: must be one of none, icp", "--align", "centres"),
                 ("--ground-sample-distance -1: must be from 0", "--gsd", "-1"),
                 ("--ground-sample-distance 1e-08: the map would have", "--gsd", "1e-8"),
                 ("--up 0,0: must be three numbers X,Y,Z", "--up", "0,0"),

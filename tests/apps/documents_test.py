@@ -111,21 +111,24 @@ class Pictures(unittest.TestCase):
 class Messages(unittest.TestCase):
     def test_quoted_messages_are_in_the_source(self):
         """In troubleshooting.md, "..." stands for a value. A message may be put together from two
-        texts at a ": ". A library's message contains "{}" where the program puts the name of an
-        option (libs/base/setting_names.h)."""
+        texts at a ": ". A library's message contains "{}" where the program puts the option that sets
+        a setting, with the value of OptionList::sets()."""
         source = "\n".join(path.read_text(encoding="utf-8")
                            for folder in ("apps", "libs") for path in (ROOT / folder).rglob("*")
                            if path.suffix in (".cpp", ".h", ".py"))
         source = re.sub(r'"\s*f?"', "", source)  # joins the literals of one message
-        options = sorted(re.findall(r'", "(--[^"]+)"\}', source), key=len, reverse=True)
-        self.assertGreater(len(options), 10)
+        options = sorted(re.findall(r'add\w*\(\s*"([\w-]+)', source), key=len, reverse=True)
+        values = re.findall(r'\.sets\("[^"]*", "([^"]+)"\)', source)
+        self.assertGreater(len(options), 100)
+        self.assertGreater(len(values), 2)
+        option = f"--(?:{'|'.join(options)})(?:{'|'.join(values)})?"
         page = (ROOT / "docs" / "troubleshooting.md").read_text(encoding="utf-8")
         quoted = re.findall(r"^    (.*)$", page, re.M)
         self.assertGreater(len(quoted), 50)
         for message in quoted:
             for part in re.split(r"\.\.\.|: ", message):
                 text = part.strip(" :")
-                unnamed = re.sub("|".join(options), "{}", text)
+                unnamed = re.sub(option, "{}", text)
                 self.assertTrue(text in source or unnamed in source, (text, message))
 
 

@@ -32,12 +32,12 @@ TEST(OutputName, NamesWithControlCharactersAreRefused) {
         << name;
     EXPECT_THAT(test::error_of([&] { folder_in_working_folder(common, name, "--report"); }),
                 HasSubstr("control character"));
-    EXPECT_THAT(test::error_of([&] { output_or(common, "", name, "--output-file"); }),
+    EXPECT_THAT(test::error_of([&] { output_or("", name, "--output-file"); }),
                 HasSubstr("control character"));
   }
   EXPECT_EQ(output_in_working_folder(common, "Öl 7.ply", "-o"), fs::path("/w/Öl 7.ply"));
-  EXPECT_EQ(output_or(common, "", "/x/y", "-o"), fs::path("/x/y"));
-  EXPECT_EQ(output_or(common, "z", "/x/y", "-o"), fs::path("/w/z"));
+  EXPECT_EQ(output_or("", "/x/y", "-o"), fs::path("/x/y"));
+  EXPECT_EQ(output_or("/w/z", "/x/y", "-o"), fs::path("/w/z"));
 }
 
 TEST(OutputName, FormatsThatAreNotWrittenAreNamed) {

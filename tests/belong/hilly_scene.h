@@ -10,6 +10,8 @@
 #include "scene/any_camera.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
+#include "worlds/height_field.h"
+#include "worlds/ports.h"
 
 namespace axial::test {
 
@@ -22,21 +24,9 @@ inline double depth_of_ground(double x, double y, int place) {
 }
 
 inline Mesh ground(int place, int cells = 60, double size = 1.6) {
-  Mesh mesh;
-  const auto side = static_cast<std::uint32_t>(cells) + 1;
-  for (std::uint32_t j = 0; j < side; ++j)
-    for (std::uint32_t i = 0; i < side; ++i) {
-      const double x = size * (i / static_cast<double>(cells) - 0.5),
-                   y = size * (j / static_cast<double>(cells) - 0.5);
-      mesh.vertices.push_back(Eigen::Vector3d(x, y, depth_of_ground(x, y, place)).cast<float>());
-    }
-  for (std::uint32_t j = 0; j + 1 < side; ++j)
-    for (std::uint32_t i = 0; i + 1 < side; ++i) {
-      const std::uint32_t a = j * side + i;
-      mesh.faces.push_back({a, a + side, a + 1});
-      mesh.faces.push_back({a + 1, a + side, a + side + 1});
-    }
-  return mesh;
+  const Eigen::Vector2d half = Eigen::Vector2d::Constant(size / 2);
+  return flipped(height_field(-half, half, static_cast<std::uint32_t>(cells),
+                              [&](double x, double y) { return depth_of_ground(x, y, place); }));
 }
 
 // The ground of place 0. `points`: number of sparse points.
@@ -45,10 +35,7 @@ inline Scene hilly_scene(int points = 600) {
   for (int i = 0; i < 5; ++i) {
     SceneImage image;
     image.path = "photo" + std::to_string(i) + ".jpg";
-    image.camera.width = kWidth;
-    image.camera.height = kHeight;
-    image.camera.lens = {300, 300, (kWidth - 1) / 2.0, (kHeight - 1) / 2.0};
-    image.camera.port = refractive::FlatPort<double>{{0, 0, 1}, 0.03, 0.01, 1, 1.5, 1.34};
+    image.camera = camera_at({0, 0, 0}, kWidth, kHeight, 300, true).camera;
     image.pose.centre = {0.12 * (i - 2), 0.06 * (i % 2), 0};
     scene.images.push_back(image);
   }

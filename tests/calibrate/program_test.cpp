@@ -18,7 +18,6 @@
 namespace axial::calibrate {
 namespace {
 
-using test::Outcome;
 using testing::angle_degrees;
 using testing::dome_port;
 using testing::flat_port;
@@ -79,8 +78,8 @@ class CalibrateHousing : public test::ProgramTest {
     return options;
   }
 
-  Outcome run(const std::string& arguments, const std::string& input = kInput) const {
-    return run_program("CalibrateHousing", input + "--lens lens.txt " + arguments);
+  std::string succeed(const std::string& arguments, const std::string& input = kInput) const {
+    return succeed_in("CalibrateHousing", input + "--lens lens.txt " + arguments);
   }
 
   refractive::Port<double> port_in(const std::string& name) const {
@@ -95,11 +94,10 @@ TEST_F(CalibrateHousing, FindsAFlatPortInTwentyFiveNoisyPhotographs) {
   constexpr double kUsualNoise = 0.2;  // [px]
   take_photographs(flat_port(), with_margin(25), testing::kUsualBoard, 10);
   const std::string input = "-i photos --board checkerboard:14x9:0.025 ";
-  const Outcome outcome =
-      run("--housing flat.json -o housing.json --report report.json --coverage coverage.svg "
-          "--calibmar calibration.yaml",
-          input);
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  succeed(
+      "--housing flat.json -o housing.json --report report.json --coverage coverage.svg "
+      "--calibmar calibration.yaml",
+      input);
   const auto port = std::get<refractive::FlatPort<double>>(port_in("housing.json"));
   EXPECT_NEAR(port.distance, 0.025, 0.0005);
   EXPECT_LT(angle_degrees(port.normal, flat_port().normal), 0.05);
@@ -130,9 +128,7 @@ TEST_F(CalibrateHousing, FindsAFlatPortInTwentyFiveNoisyPhotographs) {
   io::write_calibmar(folder_ / "calibration.yaml", camera, {});
   for (int i = 10; i < 25; ++i)
     std::filesystem::remove(folder_ / "photos" / fmt::format("view{}.png", i));
-  const Outcome again =
-      run_program("CalibrateHousing", input + "--lens calibration.yaml -o again.json");
-  ASSERT_EQ(again.exit_code, 0) << again.output;
+  succeed_in("CalibrateHousing", input + "--lens calibration.yaml -o again.json");
   const auto same = std::get<refractive::FlatPort<double>>(
       io::read_housing(folder_ / "again.json").ports.at("main"));
   EXPECT_NEAR(same.distance, port.distance, 0.001);
@@ -146,8 +142,7 @@ TEST_F(CalibrateHousing, FindsTheCentreOfADome) {
   housing.default_port = "side";
   housing.cameras[kLens.id] = "front";
   io::write_housing(folder_ / "both.json", housing);
-  const Outcome outcome = run("--housing both.json -o housing.json");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  succeed("--housing both.json -o housing.json");
   const auto side = *io::read_housing(folder_ / "housing.json").carried_port("side");
   EXPECT_EQ(std::get<refractive::FlatPort<double>>(side).distance, flat_port().distance);
   const auto port = std::get<refractive::DomePort<double>>(port_in("housing.json"));
@@ -179,15 +174,14 @@ TEST_F(CalibrateHousing, UsesPiecesOfBoards) {
   cv::Mat3b covered = io::read_photograph(cover).pixels;
   covered.colRange(60, covered.cols).setTo(cv::Scalar::all(90));
   io::write_png(cover, covered);
-  const Outcome outcome =
-      run("--housing flat.json -o housing.json --report report.json --coverage coverage.svg");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, HasSubstr("cut-view0.png: left out: "));
+  const std::string said =
+      succeed("--housing flat.json -o housing.json --report report.json --coverage coverage.svg");
+  EXPECT_THAT(said, HasSubstr("cut-view0.png: left out: "));
   const auto report = io::read_json(folder_ / "report.json");
   EXPECT_EQ(report["photographs"].size(), 13u);
   const auto pieces = report["pieces"].get<std::size_t>();
   EXPECT_GE(pieces, 5u);
-  EXPECT_THAT(outcome.output,
+  EXPECT_THAT(said,
               HasSubstr(fmt::format("{} photographs show the whole board, {} a piece of the board",
                                     13 - pieces, pieces)));
   EXPECT_THAT(read_file(folder_ / "coverage.svg"),
@@ -205,8 +199,11 @@ TEST_F(CalibrateHousing, RefusesPhotographsThatDoNotSuffice) {
   testing::SurveyOptions middle{.views = 4, .nearest = 0.7, .farthest = 0.75, .steepest = 2};
   middle.within = {Eigen::Vector2d(0.45, 0.1), Eigen::Vector2d(0.9, 0.9)};
   take_photographs(flat_port(), middle);
-  const Outcome outcome =
-      run("--housing flat.json -o housing.json --report report.json --max-distance-sigma 0.0001");
+  const test::Outcome outcome =
+      run_program("CalibrateHousing",
+                  kInput +
+                      "--lens lens.txt --housing flat.json -o housing.json --report report.json "
+                      "--max-distance-sigma 0.0001");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.output, HasSubstr("CalibrateHousing: 4 photographs determine the "));
   EXPECT_THAT(outcome.output, HasSubstr("no photograph shows corners near the image's left edge"));

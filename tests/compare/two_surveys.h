@@ -11,6 +11,7 @@
 
 #include "compare/registration.h"
 #include "scene/mesh.h"
+#include "worlds/height_field.h"
 
 namespace axial::test {
 
@@ -68,12 +69,7 @@ inline Mesh surveyed(const Plot& plot, const Height& height) {
       for (double& coordinate : vertex) coordinate += plot.noise * noise(random);
       mesh.vertices.push_back(vertex.cast<float>());
     }
-  for (std::uint32_t j = 0; j < rows; ++j)
-    for (std::uint32_t i = 0; i < columns; ++i) {
-      const std::uint32_t a = j * (columns + 1) + i;
-      mesh.faces.push_back({a, a + 1, a + columns + 2});
-      mesh.faces.push_back({a, a + columns + 2, a + columns + 1});
-    }
+  mesh.faces = grid_faces(columns, rows);
   return mesh;
 }
 

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "base/error.h"
-#include "evaluate/sampling.h"
 #include "evaluate/shapes.h"
+#include "geometry/sampling.h"
 
 namespace axial::evaluate {
 namespace {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "evaluate/shapes.h"
+#include "worlds/ports.h"
 
 namespace axial::evaluate {
 namespace {
@@ -27,11 +28,7 @@ CloudOptions with_samples(std::size_t samples) {
 
 // A camera 1 m above (x, 0, 0) that looks down at 1 m x 2 m of ground.
 View above(double x) {
-  View view;
-  view.camera = {100, 200, {100, 100, 49.5, 99.5}, {}};
-  view.pose.rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;
-  view.pose.centre = {x, 0, 1};
-  return view;
+  return {test::camera_above({x, 0, 1}, 100, 200, 100)};
 }
 
 TEST(EvaluateMeshParts, NormalsOfARoofHaveTheAngleOfItsSlope) {

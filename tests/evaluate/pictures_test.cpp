@@ -7,8 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluate/report.h"
-#include "evaluate/sampling.h"
 #include "evaluate/shapes.h"
+#include "geometry/sampling.h"
+#include "worlds/ports.h"
 
 namespace axial::evaluate {
 namespace {
@@ -25,8 +26,7 @@ TEST(ErrorColors, RunFromBlueToRedAndStayThere) {
 }
 
 TEST(DrawCloud, ShowsPointsWhereTheCameraSeesThemNearestFirst) {
-  View view;
-  view.camera = {200, 100, {100, 100, 99.5, 49.5}, {}};
+  const View view{test::camera_at({0, 0, 0}, 200, 100, 100)};
   const Viewpoint at = viewpoint_of(view, 100);
   EXPECT_EQ(at.height, 50);
   const std::vector<Eigen::Vector3f> points{
@@ -41,7 +41,7 @@ TEST(DrawCloud, ShowsPointsWhereTheCameraSeesThemNearestFirst) {
 }
 
 TEST(PrincipalViewpoint, LooksAtThePlaneFromItsFront) {
-  auto points = sample_surface(height_field(10, 2, ripples), 20000, 1);
+  auto points = geometry::sample_surface(height_field(10, 2, ripples), 20000, 1);
   for (auto& x : points) x.x() *= 1.5f;  // the shape of the picture
   const std::vector<Eigen::Vector3f> normals(10, Eigen::Vector3f(0, 0, 1));
   const Viewpoint view = principal_viewpoint(points, normals, 300, 200);

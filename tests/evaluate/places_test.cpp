@@ -7,6 +7,7 @@
 #include "evaluate/cloud_evaluation.h"
 #include "evaluate/shapes.h"
 #include "evaluate/strip.h"
+#include "worlds/ports.h"
 
 namespace axial::evaluate {
 namespace {
@@ -15,10 +16,7 @@ constexpr double kTolerance = 0.02;
 
 // A camera at (x, 0, 0) that looks along +z. At a distance of 1 m it sees 2 m in x and 1 m in y.
 View camera_at(double x) {
-  View view;
-  view.camera = {200, 100, {100, 100, 99.5, 49.5}, {}};
-  view.pose.centre = {x, 0, 0};
-  return view;
+  return {test::camera_at({x, 0, 0}, 200, 100, 100)};
 }
 
 // A grid of points 1 cm apart on a part of the floor.
@@ -85,11 +83,8 @@ TEST(RecallByThickness, CountsPixelsWhereTheViewsHaveThem) {
   const std::vector<float> of_patches{0.008f, 0.02f, 0.16f, 0.0f};
   for (std::size_t k = 0; k < of_patches.size(); ++k) {
     Mesh patch = height_field(4, 0.2, [](double, double) { return 1.0; });
-    for (auto& f : patch.faces)
-      for (std::uint32_t& corner : f) corner += static_cast<std::uint32_t>(truth.vertices.size());
     for (auto& x : patch.vertices) x.x() += 0.4f * static_cast<float>(k) - 0.6f;
-    truth.vertices.insert(truth.vertices.end(), patch.vertices.begin(), patch.vertices.end());
-    truth.faces.insert(truth.faces.end(), patch.faces.begin(), patch.faces.end());
+    append(truth, patch);
     thickness.insert(thickness.end(), patch.vertices.size(), of_patches[k]);
   }
   const std::vector<View> views{camera_at(-0.1), camera_at(0.1)};

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "evaluate/sampling.h"
 #include "evaluate/shapes.h"
+#include "geometry/sampling.h"
 #include "io/bytes/json.h"
 #include "io/colmap/colmap.h"
 #include "io/ply/ply.h"
@@ -38,7 +38,7 @@ class Programs : public test::ProgramTest {
     io::write_mesh_ply(folder_ / "truth.ply", truth);
     io::write_colmap_text(folder_ / "true", model());
     PointCloud cloud;
-    cloud.positions = sample_surface(truth, 20000, 3);
+    cloud.positions = geometry::sample_surface(truth, 20000, 3);
     for (auto& x : cloud.positions) x.z() += 0.002f;
     io::write_cloud_ply(folder_ / "cloud.ply", cloud);
   }

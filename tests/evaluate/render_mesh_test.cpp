@@ -8,10 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "base/parallel.h"
-#include "evaluate/render_report.h"
+#include "evaluate/report.h"
 #include "evaluate/shapes.h"
 #include "simulate/render.h"
 #include "support/error_of.h"
+#include "worlds/ports.h"
 
 namespace axial::evaluate {
 namespace {
@@ -22,12 +23,7 @@ constexpr double kAbove = 1;  // height of the camera above the ground [m]
 
 // A camera of 80 x 60 pixels that looks down at the ground z = 0.
 View looking_down() {
-  View view;
-  view.name = "a.jpg";
-  view.camera = {80, 60, {70, 70, 39.5, 29.5}, {}, {}};
-  view.pose.rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;
-  view.pose.centre = {0, 0, kAbove};
-  return view;
+  return {test::camera_above({0, 0, kAbove}, 80, 60, 70), "a.jpg"};
 }
 
 // The ground of 2 m x 2 m with a texture of 200 x 200 texels. The texel at the column x and the row
@@ -192,9 +188,7 @@ TEST(RenderMesh, TheNearerSurfaceHidesTheFartherOne) {
   Mesh mesh = flat_square(2, 0);
   const Mesh upper = flat_square(0.2, 0.5);
   mesh.colors.assign(mesh.vertices.size(), {200, 0, 0});
-  for (const auto& face : upper.faces)
-    mesh.faces.push_back({face[0] + 4, face[1] + 4, face[2] + 4});
-  mesh.vertices.insert(mesh.vertices.end(), upper.vertices.begin(), upper.vertices.end());
+  append(mesh, upper);
   mesh.colors.resize(mesh.vertices.size(), {0, 0, 200});
   const cv::Mat3b image =
       render_mesh(geometry::Surface(mesh), vertex_coloring(mesh.faces, mesh.colors), looking_down())

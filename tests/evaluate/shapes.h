@@ -9,33 +9,22 @@
 #include <random>
 
 #include "scene/mesh.h"
+#include "worlds/height_field.h"
 
 namespace axial::evaluate {
+
+using test::append;
 
 // Returns the surface z = height(x, y) over the square [-size/2, size/2]^2. The square is divided
 // into cells x cells smaller squares with two triangles each.
 inline Mesh height_field(int cells, double size,
                          const std::function<double(double, double)>& height) {
-  Mesh mesh;
-  for (int j = 0; j <= cells; ++j)
-    for (int i = 0; i <= cells; ++i) {
-      const double x = (static_cast<double>(i) / cells - 0.5) * size;
-      const double y = (static_cast<double>(j) / cells - 0.5) * size;
-      mesh.vertices.push_back(Eigen::Vector3d(x, y, height(x, y)).cast<float>());
-    }
-  const auto index = [cells](int i, int j) {
-    return static_cast<std::uint32_t>(j * (cells + 1) + i);
-  };
-  for (int j = 0; j < cells; ++j)
-    for (int i = 0; i < cells; ++i) {
-      mesh.faces.push_back({index(i, j), index(i + 1, j), index(i, j + 1)});
-      mesh.faces.push_back({index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)});
-    }
-  return mesh;
+  const Eigen::Vector2d half = Eigen::Vector2d::Constant(size / 2);
+  return test::height_field(-half, half, static_cast<std::uint32_t>(cells), height);
 }
 
 inline Mesh flat_square(double size, double z) {
-  return height_field(1, size, [z](double, double) { return z; });
+  return test::level_square({0, 0, z}, size);
 }
 
 inline double ripples(double x, double y) {

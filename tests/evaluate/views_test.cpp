@@ -5,27 +5,20 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "evaluate/sampling.h"
 #include "evaluate/shapes.h"
+#include "geometry/sampling.h"
+#include "worlds/ports.h"
 
 namespace axial::evaluate {
 namespace {
 
 // A camera at `centre` that looks along +z, with 200 x 100 pixels and a field 90 degrees wide.
 View camera_at(const Eigen::Vector3d& centre) {
-  View view;
-  view.camera = {200, 100, {100, 100, 99.5, 49.5}, {}};
-  view.pose.centre = centre;
-  return view;
+  return {test::camera_at(centre, 200, 100, 100)};
 }
 
 refractive::FlatPort<double> port() {
-  refractive::FlatPort<double> flat;
-  flat.distance = 0.03;
-  flat.thickness = 0.018;
-  flat.n_glass = 1.49;
-  flat.n_water = 1.333;
-  return flat;
+  return {{0, 0, 1}, 0.03, 0.018, 1, 1.49, 1.333};
 }
 
 std::uint32_t views_of(const Eigen::Vector3d& point, const std::vector<View>& views,
@@ -47,8 +40,7 @@ TEST(CountViews, KeepsToTheImageRectangle) {
 TEST(CountViews, APlateHidesWhatLiesInItsShadow) {
   Mesh mesh = flat_square(6, 2);
   const Mesh plate = flat_square(0.5, 1);  // half extent 0.25, half way: its shadow reaches 0.5
-  for (const auto& f : plate.faces) mesh.faces.push_back({f[0] + 4, f[1] + 4, f[2] + 4});
-  mesh.vertices.insert(mesh.vertices.end(), plate.vertices.begin(), plate.vertices.end());
+  append(mesh, plate);
   const geometry::Surface surface(mesh);
   const std::vector<View> views{camera_at({0, 0, 0}), camera_at({1, 0, 0})};
   EXPECT_EQ(views_of({0.45, 0, 2}, views, surface), 1u) << "hidden from the first view only";
@@ -88,9 +80,7 @@ TEST(CountViews, TheLineOfSightInWaterEndsAtThePort) {
   // hides the point.
   for (const double z : {0.02, 0.1}) {
     Mesh scene = mesh;
-    const Mesh plate = flat_square(0.5, z);
-    for (const auto& f : plate.faces) scene.faces.push_back({f[0] + 4, f[1] + 4, f[2] + 4});
-    scene.vertices.insert(scene.vertices.end(), plate.vertices.begin(), plate.vertices.end());
+    append(scene, flat_square(0.5, z));
     View wet = camera_at({0, 0, 0});
     wet.camera.port = port();
     EXPECT_EQ(views_of({0.1, 0.1, 1}, {wet}, geometry::Surface(scene)), z < 0.05 ? 1u : 0u) << z;

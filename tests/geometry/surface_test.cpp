@@ -7,14 +7,14 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "evaluate/sampling.h"
 #include "evaluate/shapes.h"
+#include "geometry/sampling.h"
 #include "geometry/triangle_distance.h"
 
 namespace axial::geometry {
 namespace {
 
-using namespace evaluate;  // shapes and samples
+using namespace evaluate;  // shapes
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
@@ -136,10 +136,7 @@ TEST(Sampling, IsUniformByArea) {
   // faces.
   Mesh mesh = height_field(30, 1, [](double, double) { return 0.0; });
   const Mesh large = flat_square(3, 5);
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), large.vertices.begin(), large.vertices.end());
-  for (const auto& f : large.faces)
-    mesh.faces.push_back({f[0] + first, f[1] + first, f[2] + first});
+  test::append(mesh, large);
   const auto samples = sample_surface(mesh, 10000, 1);
   std::size_t low = 0;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero(), spread = mean;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/log.h"
+#include "base/program.h"
 #include "io/images/image.h"
 #include "support/empty_folder.h"
 #include "support/error_of.h"
@@ -74,11 +75,22 @@ TEST(BitDepth, EightBitFilesAreNotRead) {
   EXPECT_THAT(log.text(), HasSubstr("bit_depth 12: is not used"));
 }
 
+int parsed_bit_depth(int value) {
+  int bit_depth = 0;
+  ProgramOptions program;
+  program.name = "Test";
+  declare_bit_depth(program.visible, bit_depth);
+  const std::string word = fmt::format("--bit-depth={}", value);
+  const char* const arguments[] = {"Test", word.c_str()};
+  parse_options(2, arguments, program);
+  return bit_depth;
+}
+
 TEST(BitDepth, OptionIsChecked) {
   for (const int wrong : {-1, 7, 17})
-    EXPECT_THAT(test::error_of([&] { check_bit_depth(wrong); }),
-                testing::StartsWith(fmt::format("bit_depth {}: ", wrong)));
-  for (const int right : {0, 8, 16}) EXPECT_NO_THROW(check_bit_depth(right));
+    EXPECT_THAT(test::error_of([&] { parsed_bit_depth(wrong); }),
+                testing::StartsWith(fmt::format("--bit-depth {}: ", wrong)));
+  for (const int right : {0, 8, 16}) EXPECT_EQ(parsed_bit_depth(right), right);
 }
 
 }  // namespace

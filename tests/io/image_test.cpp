@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
 #include "base/atomic_file.h"
 #include "io/wrong_input.h"
 
@@ -78,12 +81,13 @@ TEST_F(ImageTest, KeepsFloats) {
   write_float_tiff(folder_ / "one.tiff", one);
   write_float_tiff(folder_ / "three.tiff", three);
   EXPECT_EQ(max_difference(read_float_tiff(folder_ / "one.tiff"), one), 0);
-  EXPECT_EQ(max_difference(read_float3_tiff(folder_ / "three.tiff"), three), 0);
+  cv::Mat read = cv::imread(folder_ / "three.tiff", cv::IMREAD_UNCHANGED);
+  cv::cvtColor(read, read, cv::COLOR_BGR2RGB);  // OpenCV reverses the channels of the file
+  EXPECT_EQ(max_difference(read, three), 0);
   write_float_tiff(folder_ / "order.tiff", cv::Mat3f(1, 1, cv::Vec3f(1.25f, 2.5f, 3.75f)));
   const std::string pixel("\0\0\xA0\x3F\0\0\x20\x40\0\0\x70\x40", 12);
   EXPECT_THAT(read_file(folder_ / "order.tiff"), HasSubstr(pixel));
   EXPECT_THAT(error_of([&] { read_float_tiff(folder_ / "three.tiff"); }), HasSubstr("3 channels"));
-  EXPECT_THAT(error_of([&] { read_float3_tiff(folder_ / "one.tiff"); }), HasSubstr("1 channels"));
   EXPECT_THAT(error_of([&] { write_float_tiff(folder_ / "x.tiff", picture()); }),
               HasSubstr("only float"));
   EXPECT_THAT(error_of([&] { read_image_size(folder_ / "one.tiff"); }),

@@ -9,6 +9,7 @@
 
 #include "map/up_direction.h"
 #include "support/error_of.h"
+#include "worlds/height_field.h"
 
 namespace axial::map {
 namespace {
@@ -42,6 +43,12 @@ TEST(MapFrame, IsRightHandedWithUpAsHeight) {
   }
 }
 
+Mesh turned(Mesh mesh, const Eigen::Quaterniond& turn) {
+  for (Eigen::Vector3f& vertex : mesh.vertices)
+    vertex = (turn * vertex.cast<double>()).cast<float>();
+  return mesh;
+}
+
 // A plate from x = -1 to 1 m with a finely meshed strip that begins at 0.8 m and is 0.1 m higher.
 // The slope of the surface's plane is the covariance of height and x, divided by the variance of x:
 // 0.1 * 0.1 m * 0.9 m / (1/3 m^2) = 0.027. The slope of the vertices' plane would be 0.075.
@@ -50,20 +57,10 @@ TEST(MapFrame, UpIsNormalToThePlaneOfTheSurface) {
   const Eigen::Quaterniond turn =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal);
   Mesh mesh;
-  const auto add_patch = [&](double x0, double x1, double height, int cells) {
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    const auto n = static_cast<std::uint32_t>(cells);
-    for (std::uint32_t j = 0; j <= n; ++j)
-      for (std::uint32_t i = 0; i <= n; ++i) {
-        const double x = x0 + (x1 - x0) * i / n, y = -1 + 2.0 * j / n;
-        mesh.vertices.push_back((turn * Eigen::Vector3d(x, y, height)).cast<float>());
-      }
-    for (std::uint32_t j = 0; j < n; ++j)
-      for (std::uint32_t i = 0; i < n; ++i) {
-        const std::uint32_t a = first + j * (n + 1) + i;
-        mesh.faces.push_back({a, a + 1, a + n + 2});
-        mesh.faces.push_back({a, a + n + 2, a + n + 1});
-      }
+  const auto add_patch = [&](double x0, double x1, double height, std::uint32_t cells) {
+    test::append(mesh, turned(test::height_field({x0, -1}, {x1, 1}, cells,
+                                                 [&](double, double) { return height; }),
+                              turn));
   };
   add_patch(-1, 0.8, 0, 20), add_patch(0.8, 1, 0.1, 60);
   const std::vector<Eigen::Vector3d> above{5 * normal}, below{-5 * normal};
@@ -78,21 +75,8 @@ TEST(MapFrame, UpIsNormalToThePlaneOfTheSurface) {
 Mesh hills() {
   const auto turn =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(0.2, -0.3, 1));
-  Mesh mesh;
-  constexpr std::uint32_t kCells = 20;
-  for (std::uint32_t j = 0; j <= kCells; ++j)
-    for (std::uint32_t i = 0; i <= kCells; ++i) {
-      const double x = 0.1 * i, y = 0.1 * j;
-      mesh.vertices.push_back(
-          (turn * Eigen::Vector3d(x, y, 0.1 * std::sin(5 * x + 3 * y))).cast<float>());
-    }
-  for (std::uint32_t j = 0; j < kCells; ++j)
-    for (std::uint32_t i = 0; i < kCells; ++i) {
-      const std::uint32_t a = j * (kCells + 1) + i;
-      mesh.faces.push_back({a, a + 1, a + kCells + 2});
-      mesh.faces.push_back({a, a + kCells + 2, a + kCells + 1});
-    }
-  return mesh;
+  const auto height = [](double x, double y) { return 0.1 * std::sin(5 * x + 3 * y); };
+  return turned(test::height_field({0, 0}, {2, 2}, 20, height), turn);
 }
 
 void add_face(Mesh& mesh, const Eigen::Vector3f& place, float side) {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "height_field.h"
 #include "map/geotiff.h"
 #include "support/error_of.h"
+#include "worlds/height_field.h"
 
 namespace axial::map {
 namespace {

@@ -4,20 +4,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "height_field.h"
 #include "support/error_of.h"
 #include "texture/painted_room.h"
+#include "worlds/height_field.h"
+#include "worlds/ports.h"
 
 namespace axial::map {
 namespace {
 
 PosedCamera looking_down(double height, double focal) {
-  PosedCamera photo;
-  photo.camera.width = photo.camera.height = 1000;
-  photo.camera.lens = {focal, focal, 499.5, 499.5};
-  photo.pose.rotation = Eigen::Vector3d(1, -1, -1).asDiagonal();
-  photo.pose.centre = {0, 0, height};
-  return photo;
+  return test::camera_above({0, 0, height}, 1000, 1000, focal);
 }
 
 TEST(PixelWidth, IsDistanceByFocalLength) {
@@ -33,7 +29,7 @@ TEST(PixelWidth, IsThatOfTheCameraBehindThePort) {
   const Mesh mesh =
       test::height_field({-.002, -.002}, {.002, .002}, 1, [](double, double) { return 0.; });
   PosedCamera photo = looking_down(2, 800);
-  photo.camera.port = refractive::FlatPort<double>{{0, 0, 1}, 0.05, 0.01, 1.0, 1.5, 1.333};
+  photo.camera.port = test::flat_port(0.05, 0.01);
   const double apparent = 0.05 + 0.01 / 1.5 + (2 - 0.06) / 1.333;
   EXPECT_NEAR(median_pixel_width(mesh, std::vector{photo}), apparent / 800, 1e-5 * apparent / 800);
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "height_field.h"
+#include "worlds/height_field.h"
 
 namespace axial::map {
 namespace {

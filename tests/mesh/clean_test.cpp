@@ -6,33 +6,20 @@
 #include "base/error.h"
 #include "support/error_of.h"
 #include "topology.h"
+#include "worlds/height_field.h"
 
 namespace axial::mesh {
 namespace {
 
+using test::append;
 using test::error_of;
 
 // A grid of size x size squares of side 1, halved into triangles, in the plane z = 0.
 Mesh grid(std::uint32_t size, const Eigen::Vector3f& origin = Eigen::Vector3f::Zero()) {
-  Mesh mesh;
-  for (std::uint32_t y = 0; y <= size; ++y)
-    for (std::uint32_t x = 0; x <= size; ++x)
-      mesh.vertices.push_back(origin +
-                              Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), 0));
-  for (std::uint32_t y = 0; y < size; ++y)
-    for (std::uint32_t x = 0; x < size; ++x) {
-      const std::uint32_t a = y * (size + 1) + x, b = a + 1, c = a + size + 1, d = c + 1;
-      mesh.faces.push_back({a, b, d});
-      mesh.faces.push_back({a, d, c});
-    }
+  Mesh mesh = test::height_field({0, 0}, Eigen::Vector2d::Constant(size), size,
+                                 [](double, double) { return 0.0; });
+  for (Eigen::Vector3f& vertex : mesh.vertices) vertex += origin;
   return mesh;
-}
-
-void append(Mesh& mesh, const Mesh& other) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& face : other.faces)
-    mesh.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
 }
 
 CleanOptions nothing() {

@@ -10,6 +10,7 @@
 #include "scene/any_camera.h"
 #include "scene/point_cloud.h"
 #include "scene/scene.h"
+#include "worlds/ports.h"
 
 namespace axial::test {
 
@@ -23,13 +24,7 @@ inline Scene cameras_around_sphere(bool behind_ports) {
       image.path = "image";
       image.camera.width = image.camera.height = 400;
       image.camera.lens = {300, 300, 199.5, 199.5};
-      if (behind_ports)
-        image.camera.port = refractive::FlatPort<double>{.normal = {0, 0, 1},
-                                                         .distance = 0.05,
-                                                         .thickness = 0.01,
-                                                         .n_air = 1,
-                                                         .n_glass = 1.5,
-                                                         .n_water = 1.33};
+      if (behind_ports) image.camera.port = flat_port(0.05);
       const Eigen::Vector3d centre = side * Eigen::Vector3d::Unit(axis);
       const Eigen::Quaterniond towards =
           Eigen::Quaterniond::FromTwoVectors(-centre, Eigen::Vector3d::UnitZ());

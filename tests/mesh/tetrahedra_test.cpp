@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "mesh/facet_quality.h"
+#include "mesh/merge_points.h"
 #include "mesh/ray_walk.h"
-#include "mesh/spatial_order.h"
 #include "support/error_of.h"
 
 namespace axial::mesh {
@@ -91,7 +91,7 @@ TEST(Tetrahedra, RefuseAPlane) {
 TEST(RayWalk, VisitsTheTetrahedraAlongTheRayInTheirOrder) {
   const std::vector<Eigen::Vector3f> points = random_points(150, 4);
   const Tetrahedra t = delaunay(points);
-  const Stars stars(t, points.size());
+  const Stars stars = stars_of(t, points.size());
   const auto contains = [&](std::size_t cell, const Eigen::Vector3d& x) {
     Eigen::Matrix3d sides;
     const Eigen::Vector3d a = corner(t, points, cell, 0);
@@ -136,7 +136,7 @@ TEST(RayWalk, VisitsTheTetrahedraAlongTheRayInTheirOrder) {
 TEST(RayWalk, LeavesTheHull) {
   const std::vector<Eigen::Vector3f> points = random_points(100, 5);
   const Tetrahedra t = delaunay(points);
-  const Stars stars(t, points.size());
+  const Stars stars = stars_of(t, points.size());
   for (std::uint32_t start = 0; start < 100; ++start) {
     const Eigen::Vector3d direction = points[start].cast<double>().normalized();
     const std::uint32_t end = walk(t, points, stars, start, direction, 10, [](const Crossing&) {});

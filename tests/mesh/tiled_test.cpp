@@ -16,6 +16,7 @@
 #include "support/empty_folder.h"
 #include "support/error_of.h"
 #include "topology.h"
+#include "worlds/height_field.h"
 
 namespace axial::mesh {
 namespace {
@@ -204,18 +205,10 @@ class Join : public testing::Test {
  protected:
   // A plane of 2 x `n` x `n` triangles, 1 m wide, whose height at the middle vertex is `height`.
   static Mesh plane(int n, float height) {
-    Mesh mesh;
-    for (int y = 0; y <= n; ++y)
-      for (int x = 0; x <= n; ++x)
-        mesh.vertices.emplace_back(static_cast<float>(x), static_cast<float>(y),
-                                   x == n / 2 && y == n / 2 ? height : 0.0f);
-    const auto at = [n](int x, int y) { return static_cast<std::uint32_t>(y * (n + 1) + x); };
-    for (int y = 0; y < n; ++y)
-      for (int x = 0; x < n; ++x) {
-        mesh.faces.push_back({at(x, y), at(x + 1, y), at(x + 1, y + 1)});
-        mesh.faces.push_back({at(x, y), at(x + 1, y + 1), at(x, y + 1)});
-      }
-    return mesh;
+    const double half = std::floor(n / 2.0);
+    return test::height_field(
+        {0, 0}, Eigen::Vector2d::Constant(n), static_cast<std::uint32_t>(n),
+        [&](double x, double y) { return x == half && y == half ? height : 0.0f; });
   }
   static std::array<cloud::Tile, 2> halves(double at) {
     std::array<cloud::Tile, 2> tiles;

@@ -10,49 +10,25 @@
 #include "mesh/cloud_source.h"
 #include "support/error_of.h"
 #include "topology.h"
+#include "worlds/height_field.h"
+#include "worlds/ports.h"
 
 namespace axial::mesh {
 namespace {
 
+using test::append;
 using test::error_of;
 
 // A grid of size x size squares of side 0.01 around (x, 0, z), halved into triangles. The front is
 // turned upwards, to -z, where the cameras are.
 Mesh plate(std::uint32_t size, float x, float z) {
-  Mesh mesh;
-  const float half = 0.005f * static_cast<float>(size);
-  for (std::uint32_t j = 0; j <= size; ++j)
-    for (std::uint32_t i = 0; i <= size; ++i)
-      mesh.vertices.emplace_back(x - half + 0.01f * static_cast<float>(i),
-                                 -half + 0.01f * static_cast<float>(j), z);
-  for (std::uint32_t j = 0; j < size; ++j)
-    for (std::uint32_t i = 0; i < size; ++i) {
-      const std::uint32_t a = j * (size + 1) + i, b = a + 1, c = a + size + 1, d = c + 1;
-      mesh.faces.push_back({a, d, b});
-      mesh.faces.push_back({a, c, d});
-    }
-  return mesh;
-}
-
-void append(Mesh& mesh, const Mesh& other) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& face : other.faces)
-    mesh.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+  return test::flipped(test::level_square({x, 0, z}, 0.01 * size, size));
 }
 
 // Cameras at z = 0 that look along z, in air or behind a flat port.
 std::vector<geometry::PosedCamera> cameras_at(const std::vector<double>& places, bool wet) {
   std::vector<geometry::PosedCamera> cameras;
-  for (const double x : places) {
-    geometry::PosedCamera posed;
-    posed.camera.width = 300;
-    posed.camera.height = 300;
-    posed.camera.lens = {150, 150, 149.5, 149.5};
-    if (wet) posed.camera.port = refractive::FlatPort<double>{{0, 0, 1}, 0.03, 0.01, 1, 1.5, 1.34};
-    posed.pose.centre.x() = x;
-    cameras.push_back(posed);
-  }
+  for (const double x : places) cameras.push_back(test::camera_at({x, 0, 0}, 300, 300, 150, wet));
   return cameras;
 }
 

@@ -18,6 +18,7 @@ using testing::dome_port;
 using testing::flat_port;
 using testing::housed;
 using testing::kDegree;
+using testing::known_length;
 using testing::pose_errors;
 using testing::survey;
 
@@ -39,9 +40,7 @@ TEST_P(AdjustBehind, FindsPosesPointsAndScaleOfPerfectTracks) {
   bundle.images[0].pose = truth.images[0].pose;
   AdjustOptions options;
   // A measured length gives the true scale: a centred dome does not determine it.
-  options.distances.push_back({KnownDistance::Between::images, 0, 11,
-                               (truth.images[0].pose.centre - truth.images[11].pose.centre).norm(),
-                               1e-4});
+  options.distances.push_back(known_length(truth));
   const AdjustReport report = adjust(bundle, options);
   EXPECT_LT(report.final_cost, 1e-9 * report.initial_cost);
   const auto errors = pose_errors(bundle, truth, false);
@@ -227,9 +226,8 @@ TEST(Uncertainty, OfTheScaleIsWhatThePortMakesIt) {
 
 TEST(Uncertainty, OfAKnownLengthIsThatOfTheMeasure) {
   const Bundle bundle = survey(camera_behind(std::nullopt), {.noise = 0.5});
-  const double length = (bundle.images[0].pose.centre - bundle.images[11].pose.centre).norm();
   AdjustOptions options;
-  options.distances.push_back({KnownDistance::Between::images, 0, 11, length, 0.02 * length});
+  options.distances.push_back(known_length(bundle, 0.02));
   EXPECT_NEAR(uncertainty(bundle, options).scale_sigma, 0.02, 1e-4);
 }
 
@@ -244,9 +242,9 @@ Bundle with_noise(Bundle bundle, double sigma, int seed) {
 // If port and scene are both farther away by the same factor, photographs are the same except for
 // the glass. One length must be known to find the port's distance.
 KnownDistance known_baseline(const Bundle& truth) {
-  const std::size_t last = truth.images.size() - 1;
-  return {KnownDistance::Between::images, 0, last,
-          (truth.images[0].pose.centre - truth.images[last].pose.centre).norm(), 1e-5};
+  KnownDistance known = known_length(truth);
+  known.sigma = 1e-5;
+  return known;
 }
 
 // Results of many surveys that differ in noise alone: the scatter of the port's numbers about the

@@ -10,8 +10,10 @@
 namespace axial::pose {
 namespace {
 
-using test::Outcome;
+using ::testing::ContainsRegex;
 using testing::flat_port;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST_F(RefinePoses, TakesTheScaleFromPositions) {
   std::string lines = "# name x y z\nwithout_a_pose.jpg 0 0 0\n";
@@ -19,10 +21,8 @@ TEST_F(RefinePoses, TakesTheScaleFromPositions) {
     lines += fmt::format("{} {} {} {}\n", image.name, image.pose.centre.x() + 1,
                          image.pose.centre.y(), image.pose.centre.z());
   write_atomically(folder_ / "positions.txt", lines);
-  const Outcome outcome = run(kInput + "-o out --scale-from positions:positions.txt");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output,
-              ::testing::HasSubstr("positions.txt:2: the model has no image 'without_a_pose.jpg'"));
+  const std::string said = succeed(kInput + "-o out --scale-from positions:positions.txt");
+  EXPECT_THAT(said, HasSubstr("positions.txt:2: the model has no image 'without_a_pose.jpg'"));
   const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
   for (std::size_t i = 0; i < truth_.images.size(); ++i)
     EXPECT_LT(
@@ -35,7 +35,7 @@ TEST_F(RefinePoses, TakesTheScaleFromPositions) {
 TEST_F(RefinePoses, TakesNamesWithAnySigns) {
   io::ColmapModel model = io::read_colmap_model(folder_ / "sparse");
   write("sparse", model);  // writing and reading again rounds numbers
-  ASSERT_EQ(run(kInput + "-o plain --scale-from " + baseline()).exit_code, 0);
+  succeed(kInput + "-o plain --scale-from " + baseline());
   model.images[0].name = "dive 1/a,b.jpg";
   model.images[5].name = "#5 of 7.jpg";
   model.images[7].name = "\"q\" 1 2 3.jpg";
@@ -44,8 +44,7 @@ TEST_F(RefinePoses, TakesNamesWithAnySigns) {
   const std::string metres = baseline().substr(baseline().rfind(','));
   for (const char* names : {"images:dive 1/a,b.jpg,c,d.jpg", "images:\"dive 1/a,b.jpg\",c,d.jpg",
                             "images:\"dive 1/a,b.jpg\",\"c,d.jpg\""}) {
-    const Outcome outcome = run(kInput + "-o out --scale-from '" + names + metres + "'");
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+    succeed(kInput + "-o out --scale-from '" + names + metres + "'");
     EXPECT_EQ(read_file(folder_ / "out" / "sparse" / "points3D.txt"),
               read_file(folder_ / "plain" / "sparse" / "points3D.txt"));
   }
@@ -57,9 +56,8 @@ TEST_F(RefinePoses, TakesNamesWithAnySigns) {
                          truth_.images[i].pose.centre.x() + 1, truth_.images[i].pose.centre.y(),
                          truth_.images[i].pose.centre.z());
   write_atomically(folder_ / "positions.txt", lines);
-  const Outcome outcome = run(kInput + "-o placed --scale-from positions:positions.txt");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, ::testing::Not(::testing::HasSubstr("the model has no image")));
+  const std::string said = succeed(kInput + "-o placed --scale-from positions:positions.txt");
+  EXPECT_THAT(said, Not(HasSubstr("the model has no image")));
   const io::ColmapModel refined = io::read_colmap_model(folder_ / "placed" / "sparse");
   for (std::size_t i = 0; i < truth_.images.size(); ++i) {
     EXPECT_EQ(refined.images[i].name, model.images[i].name);
@@ -72,7 +70,7 @@ TEST_F(RefinePoses, TakesNamesWithAnySigns) {
 
 // If two files have a port or a lens, a line names both if they differ, and no line if they agree.
 TEST_F(RefinePoses, SaysWhichOfTwoPortsItTakes) {
-  ASSERT_EQ(run(kInput + "-o out --refine none --colmap-underwater 1").exit_code, 0);
+  succeed(kInput + "-o out --refine none --colmap-underwater 1");
   io::ColmapCamera camera = testing::kLens;
   camera.port = flat_port(2);
   io::write_calibmar(folder_ / "same.yaml", camera);
@@ -84,35 +82,28 @@ TEST_F(RefinePoses, SaysWhichOfTwoPortsItTakes) {
   lens.cameras = {camera};
   write("other_lens", lens);
   const std::string wet = "-i out/colmap-underwater -o again ";
-  const auto lines = [&](const std::string& arguments) {
-    const Outcome outcome = run(wet + arguments);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
-    return outcome.output;
-  };
+  const auto lines = [&](const std::string& arguments) { return succeed(wet + arguments); };
   for (const char* agreeing :
        {"", "--lens same.yaml", "--housing housing.json", "--lens lens --housing housing.json"})
-    EXPECT_THAT(lines(agreeing), ::testing::Not(::testing::HasSubstr("differ"))) << agreeing;
-  EXPECT_THAT(
-      lines("--lens other.yaml"),
-      ::testing::ContainsRegex("The ports of .*other.yaml are used; the ports of the model in "
-                               ".*colmap-underwater differ and are ignored, first for image0.jpg"));
+    EXPECT_THAT(lines(agreeing), Not(HasSubstr("differ"))) << agreeing;
+  EXPECT_THAT(lines("--lens other.yaml"),
+              ContainsRegex("The ports of .*other.yaml are used; the ports of the model in "
+                            ".*colmap-underwater differ and are ignored, first for image0.jpg"));
   EXPECT_THAT(lines("--lens other.yaml --housing housing.json"),
-              ::testing::ContainsRegex("The ports of .*housing.json are used; the ports of "
-                                       ".*other.yaml differ and are ignored"));
-  EXPECT_THAT(
-      lines("--lens other_lens"),
-      ::testing::ContainsRegex("The lenses of .*other_lens are used; the lenses of "
-                               ".*colmap-underwater differ and are ignored, first for camera 1"));
+              ContainsRegex("The ports of .*housing.json are used; the ports of "
+                            ".*other.yaml differ and are ignored"));
+  EXPECT_THAT(lines("--lens other_lens"),
+              ContainsRegex("The lenses of .*other_lens are used; the lenses of "
+                            ".*colmap-underwater differ and are ignored, first for camera 1"));
 }
 
 TEST_F(RefinePoses, TakesLensAndPortFromCalibmar) {
   io::ColmapCamera camera = testing::kLens;
   camera.port = flat_port(2);
   io::write_calibmar(folder_ / "calibration.yaml", camera);
-  ASSERT_EQ(run(kInput + "-o expected").exit_code, 0);
+  succeed(kInput + "-o expected");
   const auto expect_the_same = [&](const std::string& from, const std::string& output) {
-    const Outcome outcome = run("-i . " + from + " -o " + output);
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+    succeed("-i . " + from + " -o " + output);
     for (const char* name : {"sparse/cameras.txt", "sparse/images.txt", "housing.json"})
       EXPECT_EQ(read_file(folder_ / output / name), read_file(folder_ / "expected" / name))
           << from << ": " << name;
@@ -122,9 +113,8 @@ TEST_F(RefinePoses, TakesLensAndPortFromCalibmar) {
 }
 
 TEST_F(RefinePoses, TakesAModelOfColmapUnderwater) {
-  ASSERT_EQ(run(kInput + "-o out --colmap-underwater 1").exit_code, 0);
-  const Outcome outcome = run("-i out/colmap-underwater -o again");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  succeed(kInput + "-o out --colmap-underwater 1");
+  succeed("-i out/colmap-underwater -o again");
   EXPECT_EQ(io::read_housing(folder_ / "again" / "housing.json").ports.size(), 1u);
 }
 
@@ -144,7 +134,7 @@ TEST_F(RefinePoses, RefusesInOneLineThatNamesTheFault) {
   refuses("-i . --lens lens -o out", "--housing is missing");
   refuses("-i . --lens lens --housing housing.json", "--output-folder is missing");
   refuses("-i nowhere --lens lens --housing housing.json -o out", "nowhere");
-  refuses(kInput + "-o out --poses perhaps", "--poses perhaps: must be adjust or known");
+  refuses(kInput + "-o out --poses perhaps", "--poses perhaps: must be one of adjust, known");
   refuses(kInput + "-o out --poses known --scale-from " + baseline(), "contradicts --poses known");
   refuses(kInput + "-o out --refine tilt", "'tilt' is not one of normal, distance");
   refuses(kInput + "-o out --scale-from 3", "must begin with images:, points: or positions:");

@@ -14,7 +14,6 @@
 namespace axial::pose {
 namespace {
 
-using test::Outcome;
 using ::testing::HasSubstr;
 
 const std::string kScaled = kInput + "-o out --database database.db --scale-from ";
@@ -82,9 +81,8 @@ class LeftOutPhotographs : public RefinePoses {
 
 TEST_F(LeftOutPhotographs, GetPosesThatAreRight) {
   leave_out(9);
-  const Outcome outcome = run(kScaled + length());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, HasSubstr("Registered 3 of 3 photographs that COLMAP left out"));
+  const std::string said = succeed(kScaled + length());
+  EXPECT_THAT(said, HasSubstr("Registered 3 of 3 photographs that COLMAP left out"));
   const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
   ASSERT_EQ(refined.images.size(), truth_.images.size());
   // As good as poses that COLMAP found: compared with the truth, because the frame is free.
@@ -103,8 +101,7 @@ TEST_F(LeftOutPhotographs, GetPosesThatAreRight) {
 // A length between photographs of which one has no pose yet gives the scale in the end.
 TEST_F(LeftOutPhotographs, MayGiveTheScale) {
   leave_out(9);
-  const Outcome outcome = run(kScaled + baseline());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  succeed(kScaled + baseline());
   const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
   ASSERT_EQ(refined.images.size(), truth_.images.size());
   const double length = (truth_.images[0].pose.centre - truth_.images[11].pose.centre).norm();
@@ -119,17 +116,16 @@ TEST_F(LeftOutPhotographs, AreNamedIfNothingMatches) {
   elsewhere.name = "elsewhere.jpg";
   database.images.push_back(elsewhere);
   test::write_database(folder_ / "database.db", database);
-  const Outcome outcome = run(kScaled + length());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, HasSubstr("Registered 0 of 1 photographs that COLMAP left out"));
-  EXPECT_THAT(outcome.output, HasSubstr("elsewhere.jpg: not registered: "));
+  const std::string said = succeed(kScaled + length());
+  EXPECT_THAT(said, HasSubstr("Registered 0 of 1 photographs that COLMAP left out"));
+  EXPECT_THAT(said, HasSubstr("elsewhere.jpg: not registered: "));
   EXPECT_EQ(io::read_colmap_model(folder_ / "out" / "sparse").images.size(), model_.images.size());
   EXPECT_EQ(report()["registered"]["left_out"][0]["name"], "elsewhere.jpg");
 }
 
 TEST_F(LeftOutPhotographs, AreNoneIfAllHavePoses) {
-  ASSERT_EQ(run(kScaled + length()).exit_code, 0);
-  ASSERT_EQ(run(kInput + "-o plain --scale-from " + length()).exit_code, 0);
+  succeed(kScaled + length());
+  succeed(kInput + "-o plain --scale-from " + length());
   for (const char* file : {"sparse/images.txt", "sparse/points3D.txt", "report.json"})
     EXPECT_EQ(read_file(folder_ / "out" / file), read_file(folder_ / "plain" / file)) << file;
 }
@@ -149,9 +145,8 @@ TEST_F(LeftOutPhotographs, ComeFromTheDatabaseOfTheModel) {
 
 TEST_F(LeftOutPhotographs, StayOutIfPosesAreKnown) {
   write("sparse", testing::model_of(truth_));
-  const Outcome outcome = run(kInput + "-o out --poses known --database nothing.db");
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, HasSubstr("nothing.db is not read, because the poses are known"));
+  const std::string said = succeed(kInput + "-o out --poses known --database nothing.db");
+  EXPECT_THAT(said, HasSubstr("nothing.db is not read, because the poses are known"));
 }
 
 }  // namespace

@@ -14,11 +14,13 @@
 namespace axial::pose {
 namespace {
 
-using test::Outcome;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 // Repeated observations of a point in an image, at the same pixel or at others, add no information.
 TEST_F(RefinePoses, CountsAnImageOnceInATrack) {
-  ASSERT_EQ(run(kInput + "-o once --scale-from " + baseline()).exit_code, 0);
+  succeed(kInput + "-o once --scale-from " + baseline());
   io::ColmapModel model = io::read_colmap_model(folder_ / "sparse");
   std::size_t added = 0;
   for (std::size_t i = 0; i < model.points.size(); ++i) {
@@ -35,10 +37,8 @@ TEST_F(RefinePoses, CountsAnImageOnceInATrack) {
     }
   }
   write("sparse", model);
-  const Outcome outcome = run(kInput + "-o more --scale-from " + baseline());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output,
-              ::testing::HasSubstr(fmt::format("{} observations are ignored", added)));
+  const std::string said = succeed(kInput + "-o more --scale-from " + baseline());
+  EXPECT_THAT(said, HasSubstr(fmt::format("{} observations are ignored", added)));
   const auto once = nlohmann::json::parse(read_file(folder_ / "once" / "report.json"));
   const auto more = nlohmann::json::parse(read_file(folder_ / "more" / "report.json"));
   EXPECT_EQ(more["observations_after"], once["observations_after"]);
@@ -60,8 +60,7 @@ TEST_F(RefinePoses, DropsPointsThatOneImageSees) {
     model.points.push_back(alone);
   }
   write("sparse", model);
-  const Outcome outcome = run(kInput + "-o out --min-angle 0 --scale-from " + baseline());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  succeed(kInput + "-o out --min-angle 0 --scale-from " + baseline());
   const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
   EXPECT_LE(refined.points.size(), points);
   for (const io::ColmapPoint3D& point : refined.points) {
@@ -77,10 +76,8 @@ TEST_F(RefinePoses, LeavesOutAnImageOfWhichNothingFits) {
   io::ColmapModel model = io::read_colmap_model(folder_ / "sparse");
   for (io::ColmapPoint2D& point : model.images[11].points) point.x = 1024 - point.x;
   write("sparse", model);
-  const Outcome outcome = run(kInput + "-o out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output,
-              ::testing::HasSubstr("image11.jpg: left out: too few observations fit"));
+  const std::string said = succeed(kInput + "-o out");
+  EXPECT_THAT(said, HasSubstr("image11.jpg: left out: too few observations fit"));
   const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
   EXPECT_EQ(refined.images.size(), 11u);
   const auto report = io::read_json(folder_ / "out" / "report.json");
@@ -102,55 +99,45 @@ TEST_F(RefinePoses, DoesNotAskForTheHousingWhereImagesHaveFewObservations) {
     for (const io::ColmapTrackElement& element : point.track)
       model.images[element.image - model.images[0].id].points[element.point2d].point3d = point.id;
   write("sparse", model);
-  const Outcome outcome = run(kInput + "-o out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output,
-              ::testing::HasSubstr("image11.jpg: left out: too few observations fit"));
-  EXPECT_THAT(outcome.output,
-              ::testing::HasSubstr("belong to images with fewer than 30 observations that fit"));
-  EXPECT_THAT(outcome.output, ::testing::Not(::testing::HasSubstr("check the housing")));
+  const std::string said = succeed(kInput + "-o out");
+  EXPECT_THAT(said, HasSubstr("image11.jpg: left out: too few observations fit"));
+  EXPECT_THAT(said, HasSubstr("belong to images with fewer than 30 observations that fit"));
+  EXPECT_THAT(said, Not(HasSubstr("check the housing")));
 }
 
 // The stated index bends all rays by more than poses can compensate.
 TEST_F(RefinePoses, WarnsOfANumberThatDoesNotFitThePhotographs) {
   for (const char* refine : {"none", "auto"}) {
-    const Outcome right =
-        run(kInput + "-o right --refine " + refine + " --scale-from " + baseline());
-    ASSERT_EQ(right.exit_code, 0) << right.output;
-    EXPECT_THAT(right.output, ::testing::Not(::testing::HasSubstr("warning")));
+    EXPECT_THAT(succeed(kInput + "-o right --refine " + refine + " --scale-from " + baseline()),
+                Not(HasSubstr("warning")));
   }
   for (const double n_water : {1.0, 1.5}) {
     io::Housing wrong = testing::housing();
     std::get<refractive::FlatPort<double>>(wrong.ports["main"]).n_water = n_water;
     io::write_housing(folder_ / "wrong.json", wrong);
     const std::string from = "-i . --lens lens/cameras.txt --housing wrong.json -o out ";
-    const Outcome outcome = run(from + "--refine none --scale-from " + baseline());
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-    EXPECT_THAT(outcome.output,
-                ::testing::ContainsRegex("do not fit the photographs: with index of water at .* "
-                                         "errors are .* px instead of .* px"));
-    EXPECT_THAT(run(from + "--scale-from " + baseline()).output,
-                ::testing::ContainsRegex("the photographs give index of water .* standard "
-                                         "deviations from the stated .* 0.004"));
+    const std::string said = succeed(from + "--refine none --scale-from " + baseline());
+    EXPECT_THAT(said, ContainsRegex("do not fit the photographs: with index of water at .* "
+                                    "errors are .* px instead of .* px"));
+    EXPECT_THAT(succeed(from + "--scale-from " + baseline()),
+                ContainsRegex("the photographs give index of water .* standard "
+                              "deviations from the stated .* 0.004"));
   }
 }
 
 // A model with ports, aligned to centres in another unit.
 TEST_F(RefinePoses, AlignModelWarnsOfAUnitThatDoesNotFitThePorts) {
-  ASSERT_EQ(run(kInput + "-o out --colmap-underwater 1 --scale-from " + baseline()).exit_code, 0);
+  succeed(kInput + "-o out --colmap-underwater 1 --scale-from " + baseline());
   io::ColmapModel reference = io::read_colmap_model(folder_ / "out" / "sparse");
   write("metres", reference);
   for (io::ColmapImage& image : reference.images) image.pose.centre *= 0.1;
   write("other_unit", reference);
   const auto aligned = [&](const std::string& to) {
-    const Outcome outcome = run_program(
-        "AlignModel", "-i out/colmap-underwater --reference " + to + " -o aligned_to_" + to);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
-    return outcome.output;
+    return succeed_in("AlignModel",
+                      "-i out/colmap-underwater --reference " + to + " -o aligned_to_" + to);
   };
-  EXPECT_THAT(aligned("metres"), ::testing::Not(::testing::HasSubstr("do not fit")));
-  EXPECT_THAT(aligned("other_unit"),
-              ::testing::HasSubstr("the model's lengths are 10 times too small"));
+  EXPECT_THAT(aligned("metres"), Not(HasSubstr("do not fit")));
+  EXPECT_THAT(aligned("other_unit"), HasSubstr("the model's lengths are 10 times too small"));
 }
 
 }  // namespace

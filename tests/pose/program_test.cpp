@@ -13,20 +13,19 @@
 namespace axial::pose {
 namespace {
 
-using test::Outcome;
 using testing::camera_behind;
+using ::testing::ContainsRegex;
 using testing::flat_port;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST_F(RefinePoses, MakesAModelThatInterfaceColmapReads) {
-  const Outcome outcome = run(kInput + "-o out --refine none --scale-from " + baseline());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  succeed(kInput + "-o out --refine none --scale-from " + baseline());
   const io::ColmapModel refined = io::read_colmap_model(io::find_colmap_model(folder_ / "out"));
   ASSERT_EQ(refined.cameras.size(), 1u);
   EXPECT_EQ(refined.cameras[0].model, "OPENCV");
   EXPECT_EQ(refined.cameras[0].params, testing::kLens.params);
-  Bundle found = truth_;
-  for (std::size_t i = 0; i < found.images.size(); ++i)
-    found.images[i].pose = refined.images[i].pose;
+  const Bundle found = found_poses(refined);
   const auto errors = testing::pose_errors(found, truth_, false);
   EXPECT_LT(errors.centre_rms, 0.001);
   EXPECT_LT(errors.largest_angle, 0.05);
@@ -43,14 +42,10 @@ TEST_F(RefinePoses, RefinesImagesBehindFlatPortsAndDomesTogether) {
   for (std::size_t i = 1; i < truth_.images.size(); i += 2)
     housing.images[truth_.images[i].name] = "dome";
   io::write_housing(folder_ / "housing.json", housing);
-  const Outcome outcome =
-      run(kInput + "-o out --refine index --index-sigma 0.001 --scale-from " + baseline());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  succeed(kInput + "-o out --refine index --index-sigma 0.001 --scale-from " + baseline());
   const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
   EXPECT_EQ(refined.cameras.size(), 2u);
-  Bundle found = truth_;
-  for (std::size_t i = 0; i < found.images.size(); ++i)
-    found.images[i].pose = refined.images[i].pose;
+  const Bundle found = found_poses(refined);
   const auto errors = testing::pose_errors(found, truth_, false);
   EXPECT_LT(errors.centre_rms, 0.001);
   EXPECT_LT(errors.largest_angle, 0.05);
@@ -76,8 +71,7 @@ TEST_F(RefinePoses, FindsTheNumbersOfEachKindOfPort) {
     housing.images[truth_.images[i].name] = "dome";
   io::write_housing(folder_ / "housing.json", housing);
   const std::string known = "-o out --poses known --refine ";
-  const Outcome outcome = run(kInput + known + "normal,distance,centre");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  succeed(kInput + known + "normal,distance,centre");
   const io::Housing found = io::read_housing(folder_ / "out" / "housing.json");
   std::size_t flats = 0, domes = 0;
   for (const auto& [name, port] : found.ports) {
@@ -100,7 +94,7 @@ TEST_F(RefinePoses, FindsTheNumbersOfEachKindOfPort) {
   EXPECT_EQ(report["cameras"][1]["free"][2]["name"], "centre z");
 
   // With the number of one kind alone, the port of the other kind stays.
-  ASSERT_EQ(run(kInput + known + "centre").exit_code, 0);
+  succeed(kInput + known + "centre");
   bool stays = false;
   for (const auto& [name, port] : io::read_housing(folder_ / "out" / "housing.json").ports)
     if (const auto* const one = std::get_if<refractive::FlatPort<double>>(&port))
@@ -109,11 +103,10 @@ TEST_F(RefinePoses, FindsTheNumbersOfEachKindOfPort) {
 }
 
 TEST_F(RefinePoses, ReportsErrorsAndWhatItKnows) {
-  const Outcome outcome =
-      run(kInput + "-o out --refine distance,normal --scale-from " + baseline());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, ::testing::HasSubstr("distance"));
-  EXPECT_THAT(outcome.output, ::testing::HasSubstr("image11.jpg"));
+  const std::string said =
+      succeed(kInput + "-o out --refine distance,normal --scale-from " + baseline());
+  EXPECT_THAT(said, HasSubstr("distance"));
+  EXPECT_THAT(said, HasSubstr("image11.jpg"));
   const auto report = io::read_json(folder_ / "out" / "report.json");
   EXPECT_NEAR(report["pixel_sigma"].get<double>(), 0.2, 0.01);  // 1 / sqrt(2 x 4000) is 1 %
   EXPECT_LT(report["rms_after_px"].get<double>(), report["rms_before_px"].get<double>());
@@ -129,9 +122,7 @@ TEST_F(RefinePoses, FindsAPortThatWasMeasuredBadly) {
   io::Housing wrong = testing::housing();
   wrong.ports["main"] = flat_port(3, 0.025);
   io::write_housing(folder_ / "housing.json", wrong);
-  const Outcome outcome =
-      run(kInput + "-o out --refine distance,normal --scale-from " + baseline());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  succeed(kInput + "-o out --refine distance,normal --scale-from " + baseline());
   const auto report = io::read_json(folder_ / "out" / "report.json");
   const auto& free = report["cameras"][0]["free"];
   const std::array<double, 3> truth{2, 0, 20};    // degrees, degrees, mm
@@ -151,8 +142,7 @@ TEST_F(RefinePoses, FindsTheFocalLengthOfADistortingLens) {
   lens.cameras[0].params[0] /= 1.04;
   lens.cameras[0].params[1] /= 1.04;
   write("lens", lens);
-  const Outcome outcome = run(kInput + "-o out --refine focal --scale-from " + baseline());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  succeed(kInput + "-o out --refine focal --scale-from " + baseline());
   const auto report = io::read_json(folder_ / "out" / "report.json");
   const auto& factor = report["cameras"][0]["free"].at(0);
   EXPECT_NEAR(factor["value"].get<double>(), 1.04, 3 * factor["sigma"].get<double>());
@@ -173,12 +163,10 @@ TEST_F(RefinePoses, EstimatesWhatWasMeasuredByRuler) {
   lens.cameras = {testing::kLens};
   for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) lens.cameras[0].params[k] *= 1.005;
   write("lens", lens);
-  const Outcome outcome = run(kInput + "-o out --scale-from " + baseline());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, ::testing::Not(::testing::HasSubstr("warning")));
-  EXPECT_THAT(outcome.output,
-              ::testing::ContainsRegex("normal to the right [0-9.]+ [+]- [0-9.]+ degrees, stated: "
-                                       "0 [+]- 3 degrees, decided by the photographs"));
+  const std::string said = succeed(kInput + "-o out --scale-from " + baseline());
+  EXPECT_THAT(said, Not(HasSubstr("warning")));
+  EXPECT_THAT(said, ContainsRegex("normal to the right [0-9.]+ [+]- [0-9.]+ degrees, stated: "
+                                  "0 [+]- 3 degrees, decided by the photographs"));
   const auto report = io::read_json(folder_ / "out" / "report.json");
   const auto& free = report["cameras"][0]["free"];
   ASSERT_EQ(free.size(), 5u);
@@ -210,11 +198,9 @@ TEST_F(RefinePoses, StartsAgainWithTheRightKindOfPort) {
       refractive::DomePort<double>{Eigen::Vector3d::Zero(), 0.06, 0.008, 1, 1.52, 1.333};
   dome.default_port = "main";
   io::write_housing(folder_ / "housing.json", dome);
-  const Outcome outcome = run(kInput + "-o out --scale-from " + baseline());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output,
-              ::testing::ContainsRegex("warning: The photographs fit a flat port better than a "
-                                       "dome: .* refined again, with the usual numbers of a flat"));
+  const std::string said = succeed(kInput + "-o out --scale-from " + baseline());
+  EXPECT_THAT(said, ContainsRegex("warning: The photographs fit a flat port better than a "
+                                  "dome: .* refined again, with the usual numbers of a flat"));
   const io::Housing found = io::read_housing(folder_ / "out" / "housing.json");
   const auto& port = std::get<refractive::FlatPort<double>>(found.ports.at("main"));
   EXPECT_NEAR(std::asin(port.normal.x()), 2 * testing::kDegree, 0.3 * testing::kDegree);
@@ -234,7 +220,7 @@ TEST_F(RefinePoses, TakesStandardDeviationsFromFilesAndOptions) {
   lens.cameras = {testing::kLens};
   lens.cameras[0].focal_sigma = 0.0003;
   write("lens", lens);
-  ASSERT_EQ(run(kInput + "-o out --index-sigma 0.0002 --scale-from " + baseline()).exit_code, 0);
+  succeed(kInput + "-o out --index-sigma 0.0002 --scale-from " + baseline());
   const auto report = io::read_json(folder_ / "out" / "report.json");
   const auto& free = report["cameras"][0]["free"];
   ASSERT_EQ(free.size(), 5u);
@@ -243,7 +229,7 @@ TEST_F(RefinePoses, TakesStandardDeviationsFromFilesAndOptions) {
   EXPECT_EQ(free[3]["sigma_before"].get<double>(), 0.0002);
   EXPECT_EQ(free[4]["sigma_before"].get<double>(), 0.0003);
   // Numbers that stay fixed keep what the files state.
-  ASSERT_EQ(run(kInput + "-o kept --refine none").exit_code, 0);
+  succeed(kInput + "-o kept --refine none");
   EXPECT_EQ(read_file(folder_ / "kept" / "housing.json"), read_file(folder_ / "housing.json"));
   EXPECT_EQ(io::read_colmap_cameras(folder_ / "kept" / "sparse" / "cameras.txt").at(0).focal_sigma,
             0.0003);
@@ -252,22 +238,19 @@ TEST_F(RefinePoses, TakesStandardDeviationsFromFilesAndOptions) {
 // Without a known length, the doubt of the port is in the scale, fixed or not.
 TEST_F(RefinePoses, SaysThatRefractionHardlyTellsTheScale) {
   for (const char* refine : {"auto", "none"}) {
-    const Outcome outcome = run(kInput + "-o out --refine " + refine);
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-    EXPECT_THAT(outcome.output,
-                ::testing::HasSubstr("because only refraction determines the scale"));
+    const std::string said = succeed(kInput + "-o out --refine " + refine);
+    EXPECT_THAT(said, HasSubstr("because only refraction determines the scale"));
     EXPECT_GT(io::read_json(folder_ / "out" / "report.json")["scale_sigma"].get<double>(), 0.02);
   }
-  EXPECT_THAT(run(kInput + "-o out --scale-from " + baseline()).output,
-              ::testing::Not(::testing::HasSubstr("only refraction")));
+  EXPECT_THAT(succeed(kInput + "-o out --scale-from " + baseline()),
+              Not(HasSubstr("only refraction")));
 }
 
 TEST_F(RefinePoses, LeavesKnownPosesAsTheyAre) {
   io::ColmapModel known = testing::model_of(truth_);
   for (io::ColmapPoint3D& point : known.points) point.position *= 1.1;
   write("sparse", known);
-  const Outcome outcome = run(kInput + "-o out --poses known");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  succeed(kInput + "-o out --poses known");
   const io::ColmapModel placed = io::read_colmap_model(folder_ / "out" / "sparse");
   for (std::size_t i = 0; i < known.images.size(); ++i) {
     const Pose &kept = placed.images[i].pose, &given = known.images[i].pose;
@@ -280,8 +263,8 @@ TEST_F(RefinePoses, LeavesKnownPosesAsTheyAre) {
 }
 
 TEST_F(RefinePoses, GivesTheSameBytesEachTime) {
-  ASSERT_EQ(run(kInput + "-o one --max-threads 1").exit_code, 0);
-  ASSERT_EQ(run(kInput + "-o two").exit_code, 0);
+  succeed(kInput + "-o one --max-threads 1");
+  succeed(kInput + "-o two");
   for (const char* name : {"sparse/images.txt", "sparse/points3D.txt", "report.json"})
     EXPECT_EQ(read_file(folder_ / "one" / name), read_file(folder_ / "two" / name)) << name;
 }

@@ -5,8 +5,6 @@
 
 #include "base/atomic_file.h"
 #include "io/cameras/housing.h"
-#include "pose/adjust.h"
-#include "pose/refine.h"
 
 namespace axial::pose {
 
@@ -17,14 +15,7 @@ void RefinePoses::SetUp() {
 }
 
 void RefinePoses::write_input() {
-  Bundle absorbed = truth_;
-  for (BundleCamera& camera : absorbed.cameras) camera.measured.port.reset();
-  AdjustOptions options;
-  options.free[kFocalNumber] = true;
-  options.loss_sigmas = 10;
-  adjust(absorbed, options);
-  scale_places(absorbed, 7.3);
-  write("sparse", testing::model_of(absorbed));
+  write("sparse", testing::model_of(testing::absorbed(truth_, 7.3)));
   io::ColmapModel lens;
   lens.cameras = {testing::kLens};
   write("lens", lens);
@@ -35,13 +26,19 @@ void RefinePoses::write(const std::string& name, const io::ColmapModel& model) {
   io::write_colmap_text(folder_ / name, model);
 }
 
-test::Outcome RefinePoses::run(const std::string& arguments) const {
-  return run_program("RefinePoses", arguments);
+std::string RefinePoses::succeed(const std::string& arguments) const {
+  return succeed_in("RefinePoses", arguments);
+}
+
+Bundle RefinePoses::found_poses(const io::ColmapModel& refined) const {
+  Bundle found = truth_;
+  for (std::size_t i = 0; i < found.images.size(); ++i)
+    found.images[i].pose = refined.images.at(i).pose;
+  return found;
 }
 
 std::string RefinePoses::baseline() const {
-  return fmt::format("images:image0.jpg,image11.jpg,{}",
-                     (truth_.images[0].pose.centre - truth_.images[11].pose.centre).norm());
+  return fmt::format("images:image0.jpg,image11.jpg,{}", testing::known_length(truth_).metres);
 }
 
 }  // namespace axial::pose

@@ -24,7 +24,11 @@ class RefinePoses : public test::ProgramTest {
 
   void write(const std::string& name, const io::ColmapModel& model);
 
-  test::Outcome run(const std::string& arguments) const;
+  // Runs the program, which must succeed, and returns what it says.
+  std::string succeed(const std::string& arguments) const;
+
+  // The survey with the poses of `refined`, which has all images in their order.
+  Bundle found_poses(const io::ColmapModel& refined) const;
 
   // Returns the option --scale-from with the true distance of two images.
   std::string baseline() const;

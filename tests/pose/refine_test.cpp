@@ -13,9 +13,11 @@
 namespace axial::pose {
 namespace {
 
+using testing::absorbed;
 using testing::camera_behind;
 using testing::dome_port;
 using testing::flat_port;
+using testing::known_length;
 using testing::mixed_survey;
 using testing::pose_errors;
 using testing::survey;
@@ -32,25 +34,10 @@ std::ostream& operator<<(std::ostream& out, const Case& one) {
   return out << one.name;
 }
 
-// The survey as a pinhole engine with a free focal length reconstructs it, at an arbitrary scale.
-Bundle absorbed(const Bundle& truth) {
-  Bundle bundle = truth;
-  for (BundleCamera& camera : bundle.cameras) camera.measured.port.reset();
-  AdjustOptions options;
-  options.free[kFocalNumber] = true;
-  options.loss_sigmas = 10;
-  adjust(bundle, options);
-  scale_places(bundle, 7.3);
-  bundle.cameras = truth.cameras;
-  return bundle;
-}
-
 // The known length between the survey's ends determines the scale.
 RefineOptions with_known_length(const Bundle& truth) {
   RefineOptions options;
-  const double length = (truth.images[0].pose.centre - truth.images[11].pose.centre).norm();
-  options.adjust.distances.push_back(
-      {KnownDistance::Between::images, 0, 11, length, 1e-4 * length});
+  options.adjust.distances.push_back(known_length(truth));
   return options;
 }
 
@@ -59,7 +46,7 @@ class RefineBehind : public ::testing::TestWithParam<Case> {};
 TEST_P(RefineBehind, FindsPosesFromAbsorbedOnes) {
   const Bundle truth = survey(camera_behind(GetParam().port),
                               {.distance = GetParam().distance, .points = 400, .noise = 0.2});
-  Bundle bundle = absorbed(truth);
+  Bundle bundle = absorbed(truth, 7.3);
   const RefineOptions options = with_known_length(truth);
   bring_to_metres(bundle, options.adjust);
   const RefineReport report = refine(bundle, options);
@@ -79,7 +66,7 @@ TEST_P(RefineBehind, LeavesTheErrorsThatTheNoiseMakes) {
   constexpr double kNoise = 0.5;
   const Bundle truth = survey(camera_behind(GetParam().port),
                               {.distance = GetParam().distance, .points = 400, .noise = kNoise});
-  Bundle bundle = absorbed(truth);
+  Bundle bundle = absorbed(truth, 7.3);
   const RefineOptions options = with_known_length(truth);
   bring_to_metres(bundle, options.adjust);
   const RefineReport report = refine(bundle, options);
@@ -95,7 +82,7 @@ TEST_P(RefineBehind, LeavesTheErrorsThatTheNoiseMakes) {
 TEST_P(RefineBehind, SaysHowWellItKnowsTheScale) {
   const Bundle truth = survey(camera_behind(GetParam().port),
                               {.distance = GetParam().distance, .points = 400, .noise = 0.2});
-  Bundle bundle = absorbed(truth);
+  Bundle bundle = absorbed(truth, 7.3);
   RefineOptions options;
   bring_to_metres(bundle, options.adjust);
   const RefineReport report = refine(bundle, options);
@@ -121,7 +108,7 @@ TEST(RefineBehindFlatPortsAndDomes, FindsPosesFromAbsorbedOnes) {
                                     {.distance = 0.8, .points = 400, .noise = 0.2});
   const RefineOptions options = with_known_length(truth);
   const auto refined = [&](bool swapped) {
-    Bundle bundle = absorbed(truth);
+    Bundle bundle = absorbed(truth, 7.3);
     for (BundleImage& image : bundle.images)
       if (swapped) image.camera = 1 - image.camera;
     bring_to_metres(bundle, options.adjust);
@@ -132,7 +119,7 @@ TEST(RefineBehindFlatPortsAndDomes, FindsPosesFromAbsorbedOnes) {
   EXPECT_LT(report.rms_after, 0.2 * std::sqrt(2.0) * 1.02);
   EXPECT_GT(report.rms_after, 0.2 * std::sqrt(2.0) * 0.8);
   EXPECT_GT(report.observations_after, report.observations_before * 98 / 100);
-  const auto before = pose_errors(absorbed(truth), truth), after = pose_errors(bundle, truth);
+  const auto before = pose_errors(absorbed(truth, 7.3), truth), after = pose_errors(bundle, truth);
   EXPECT_LT(after.centre_rms, 0.001 * 0.8);
   EXPECT_LT(after.largest_angle, 0.05);
   EXPECT_NEAR(after.scale, 1, 1e-3);
@@ -158,7 +145,7 @@ class RefineWithPositions : public ::testing::Test {
  protected:
   const Bundle truth_ =
       survey(camera_behind(flat_port(3)), {.distance = 2.5, .points = 400, .noise = 0.3});
-  const Bundle absorbed_ = absorbed(truth_);
+  const Bundle absorbed_ = absorbed(truth_, 7.3);
 
   std::pair<Bundle, RefineReport> refined(const RefineOptions& options) const {
     Bundle bundle = absorbed_;
@@ -269,7 +256,7 @@ TEST(BringToMetres, TakesTheScaleOfKnownPositions) {
 TEST(Refine, DropsAndFindsTheSameInManyImages) {
   const Bundle truth =
       survey(camera_behind(flat_port(3)), {.distance = 2.5, .points = 400, .noise = 0.3});
-  Bundle start = absorbed(truth);
+  Bundle start = absorbed(truth, 7.3);
   for (std::size_t i = 0; i < start.observations.size(); i += 25)
     start.observations[i].pixel += Eigen::Vector2d(30, 20);
   RefineOptions options = with_known_length(truth);

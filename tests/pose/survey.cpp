@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "pose/refine.h"
 #include "scene/decompositions.h"
 
 namespace axial::pose::testing {
@@ -78,6 +79,24 @@ Bundle mixed_survey(const CameraModel& first, const CameraModel& second,
            p.y() > second.height - 1;
   });
   return bundle;
+}
+
+Bundle absorbed(const Bundle& truth, double scale) {
+  Bundle bundle = truth;
+  for (BundleCamera& camera : bundle.cameras) camera.measured.port.reset();
+  AdjustOptions options;
+  options.free[kFocalNumber] = true;
+  options.loss_sigmas = 10;
+  adjust(bundle, options);
+  scale_places(bundle, scale);
+  bundle.cameras = truth.cameras;
+  return bundle;
+}
+
+KnownDistance known_length(const Bundle& truth, double sigma) {
+  const std::size_t last = truth.images.size() - 1;
+  const double length = (truth.images[0].pose.centre - truth.images[last].pose.centre).norm();
+  return {KnownDistance::Between::images, 0, last, length, sigma * length};
 }
 
 void disturb(Bundle& bundle, double angle, double shift, unsigned seed) {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "pose/bundle.h"
+#include "pose/adjust.h"
 
 namespace axial::pose::testing {
 
@@ -50,6 +50,14 @@ Bundle survey(const CameraModel& camera, const SurveyOptions& options);
 // Like survey(), but the images are taken by the cameras `first` and `second` in turn.
 Bundle mixed_survey(const CameraModel& first, const CameraModel& second,
                     const SurveyOptions& options);
+
+// The survey as a pinhole engine with a free focal length reconstructs it: with poses and points
+// that absorbed refraction, at `scale` times the true lengths. The cameras are those of `truth`.
+Bundle absorbed(const Bundle& truth, double scale);
+
+// The true length between the first and the last image. Its standard deviation is `sigma` times as
+// long.
+KnownDistance known_length(const Bundle& truth, double sigma = 1e-4);
 
 // Moves poses and points at random. The standard deviations are `angle` [rad] for rotations, and
 // `shift` [m] for positions.

@@ -102,7 +102,7 @@ TEST(Uncertainty, IsThatOfTheDenseNormalEquations) {
   AdjustOptions options;
   options.loss_sigmas = 1e9;
   options.free[kIndexNumber] = true;
-  options.distances.push_back({KnownDistance::Between::images, 0, 5, length, 0.02 * length});
+  options.distances.push_back(testing::known_length(bundle, 0.02));
   const double pixel_sigma = observed_pixel_sigma(bundle, options);
   const DenseNormal dense(bundle);
   const Eigen::MatrixXd covariance = dense.covariance(pixel_sigma, 0.02 * length);

@@ -7,8 +7,11 @@
 #include <span>
 #include <vector>
 
+#include "base/order_statistics.h"
 #include "refine/refine.h"
 #include "support/textured_scene.h"
+#include "worlds/height_field.h"
+#include "worlds/ports.h"
 
 namespace axial::test {
 
@@ -19,14 +22,7 @@ inline CameraModel camera_behind(Optics optics) {
   model.width = 200, model.height = 150;
   model.lens = {170, 171, 99, 75};
   if (optics == Optics::distorted) model.distortion.emplace().above = {1, -0.1, 0.02, 0, 0};
-  if (optics == Optics::flat_port) {
-    refractive::FlatPort<double> port;
-    port.normal = Eigen::Vector3d(0.03, -0.02, 1).normalized();
-    port.distance = 0.03;
-    port.thickness = 0.01;
-    port.n_air = 1, port.n_glass = 1.5, port.n_water = 1.333;
-    model.port = port;
-  }
+  if (optics == Optics::flat_port) model.port = flat_port(0.03, 0.01, {0.03, -0.02, 1});
   return model;
 }
 
@@ -55,16 +51,8 @@ class PhotographedMesh {
         const double z = height(x, y) + noise * normal(result.vertices.size());
         result.vertices.push_back(Eigen::Vector3d(x, y, z).cast<float>());
       }
-    const auto at = [&](int row, int column) {
-      return static_cast<std::uint32_t>(row * (count + 1) + column);
-    };
-    for (int row = 0; row < count; ++row)
-      for (int column = 0; column < count; ++column) {
-        // Seen from above, where z is smaller, the corners are counter-clockwise.
-        result.faces.push_back({at(row, column), at(row + 1, column + 1), at(row, column + 1)});
-        result.faces.push_back({at(row, column), at(row + 1, column), at(row + 1, column + 1)});
-      }
-    return result;
+    result.faces = grid_faces(static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(count));
+    return flipped(std::move(result));  // seen from above, where z is smaller
   }
 
   // The median of the distances |z - height(x, y)| [m] of the vertices, without vertices near the
@@ -94,9 +82,7 @@ class PhotographedMesh {
     for (const Eigen::Vector3f& x : points)
       if (std::abs(x.x()) < 0.4f && std::abs(x.y()) < 0.4f)
         errors.push_back(std::abs(x.z() - height(x.x(), x.y())));
-    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-    std::nth_element(errors.begin(), middle, errors.end());
-    return *middle;
+    return upper_median(std::move(errors));
   }
 
   // A standard normal number that depends on `key`, by the method of Box and Muller.

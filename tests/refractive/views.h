@@ -10,7 +10,7 @@
 #include <optional>
 #include <random>
 
-#include "refractive/depth_conversion.h"
+#include "refractive/axial_ray.h"
 #include "refractive/flat_port_camera.h"
 
 namespace axial::refractive::testing {
@@ -88,6 +88,15 @@ inline View random_view(Random& random, int width = 1024, int height = 768) {
 
 inline Vector2<double> random_pixel(Random& random, const View& view) {
   return {random.uniform(0, view.width - 1), random.uniform(0, view.height - 1)};
+}
+
+// The distance along `ray` of its point with the distance `range` from the camera centre.
+template <class T>
+T distance_from_range(const AxialRay<T>& ray, const T& range) {
+  using std::sqrt;
+  const T along = ray.origin.dot(ray.direction);
+  const T offset2 = (ray.origin - along * ray.direction).squaredNorm();
+  return sqrt(range * range - offset2) - along;
 }
 
 // Returns a point on the pixel's ray at a random distance of 0.3 to 10 m from the camera centre.

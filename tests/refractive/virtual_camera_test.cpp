@@ -128,27 +128,6 @@ TEST(VirtualHomography, IsTheExactWarpWhenAllIndicesAreOne) {
   }
 }
 
-// Eq. 7, corrected: a consistent distance is reprojected to exactly the reference pixel.
-TEST(VirtualReprojection, ReturnsToThePixelOfAConsistentPoint) {
-  Random random(85);
-  int tested = 0;
-  for (int k = 0; k < 500; ++k) {
-    const Pair pair = random_pair(random);
-    const auto reference = pair.reference.camera<double>();
-    const auto source = pair.source.camera<double>();
-    const Vector2<double> p = random_pixel(random, pair.reference);
-    const Vector3<double> X = pair.R * (reference.ray(p).at(2) - pair.C);
-    const auto image = source.project(X);
-    if (!image.visible) continue;
-    ++tested;
-    const AxialRay<double> ray = source.ray(image.pixel);
-    const Vector2<double> back = virtual_reprojection(
-        virtual_camera(reference, p), ray, (X - ray.origin).dot(ray.direction), pair.R, pair.C);
-    EXPECT_LT((back - p).norm(), 1e-8);
-  }
-  EXPECT_GT(tested, 200);
-}
-
 TEST(PixelLookup, HoldsTheRaysAndPrincipalPoints) {
   Random random(86);
   const View view = random_view(random, 64, 48);

@@ -38,6 +38,13 @@ class ProgramTest : public testing::Test {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output};
   }
 
+  // Expects exit code 0, and returns the output.
+  std::string succeed_in(const std::string& program, const std::string& arguments) const {
+    const Outcome outcome = run_program(program, arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << arguments << "\n" << outcome.output;
+    return outcome.output;
+  }
+
   // Expects exit code 1 and exactly one line of output, which contains `expected`.
   void expect_refusal(const std::string& program, const std::string& arguments,
                       const std::string& expected) const {

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "geometry/faces.h"
 #include "support/error_of.h"
 #include "texture/face_labels.h"
 #include "texture/painted_room.h"
@@ -211,7 +212,7 @@ TEST(TextureTiles, ThePartOfAMeshHasTheSightsOfTheWhole) {
   for (const std::uint32_t f : floor) {
     const auto expected = all.of(f), found = part.of(f);
     EXPECT_TRUE(std::ranges::equal(expected, found, same_sight));
-    if (expected.size() < 4 && middle_of(mesh, f).norm() < 0.5) ++hidden;
+    if (expected.size() < 4 && geometry::middle_of(mesh, f).norm() < 0.5) ++hidden;
   }
   EXPECT_GT(hidden, 10u);
 }

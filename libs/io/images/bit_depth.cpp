@@ -42,12 +42,8 @@ int largest_bits(std::span<const fs::path> photographs, std::size_t at_once) {
 void declare_bit_depth(OptionList& list, int& bit_depth) {
   list.add_with_default("bit-depth", &bit_depth,
                         "number of bits that the values of 16-bit images use, 8 to 16 (0: as many "
-                        "as the largest value in all images needs)");
-}
-
-void check_bit_depth(int bit_depth, const std::string& setting) {
-  if (bit_depth != 0 && (bit_depth < 8 || bit_depth > 16))
-    fail("{} {}: must be 0, or from 8 to 16", setting, bit_depth);
+                        "as the largest value in all images needs)")
+      .zero_or(8, 16);
 }
 
 int common_bit_depth(std::span<const fs::path> photographs, std::span<const ImageHeader> headers,

@@ -14,13 +14,9 @@ namespace axial::io {
 
 // Adds the option `--bit-depth` to `list`. Its value is stored in `bit_depth`, which must exist
 // until parse_options() has returned. The default is the present value of `bit_depth`. 0 means: as
-// many bits as the largest value in all photographs needs (common_bit_depth). The value is not
-// checked here (check_bit_depth).
+// many bits as the largest value in all photographs needs (common_bit_depth). parse_options()
+// refuses a value that is neither 0 nor from 8 to 16 (both ends included).
 void declare_bit_depth(OptionList& list, int& bit_depth);
-
-// Error if `bit_depth` is neither 0 nor from 8 to 16 (both ends included). The message calls the
-// value `setting`.
-void check_bit_depth(int bit_depth, const std::string& setting = "bit_depth");
 
 // Returns the number of bits (8 to 16) that the values of 16-bit photographs use. in_8_bits needs
 // this number to convert the photographs to 8 bits. `headers[i]` is the header of `photographs[i]`.
@@ -33,7 +29,7 @@ void check_bit_depth(int bit_depth, const std::string& setting = "bit_depth");
 // 3. Otherwise the result is the number of bits that the largest value in all photographs needs, at
 //    least 8. The log states the result.
 //
-// Messages call `asked` by the name `setting`. Precondition: check_bit_depth() accepts `asked`.
+// Messages call `asked` by the name `setting`. Precondition: `asked` is 0, or from 8 to 16.
 // Photographs are decoded only under rule 3, and only those of more than 8 bits. They are decoded
 // in parallel, as many at a time as fit into a quarter of the free memory, and at least one. Error
 // for a photograph that cannot be read.

@@ -293,16 +293,6 @@ cv::Mat1f read_float_tiff(const fs::path& path) {
   return image;
 }
 
-cv::Mat3f read_float3_tiff(const fs::path& path) {
-  const cv::Mat image = read_as_stored(path);
-  if (image.type() != CV_32FC3)
-    fail("{}: is not an image of three float channels ({} channels of {} bytes)", path.string(),
-         image.channels(), image.elemSize1());
-  cv::Mat3f channels_in_order;
-  cv::cvtColor(image, channels_in_order, cv::COLOR_BGR2RGB);
-  return channels_in_order;
-}
-
 void write_float_tiff(const fs::path& path, const cv::Mat& image) {
   if (image.depth() != CV_32F) fail("{}: only float images are written as TIFF", path.string());
   // OpenCV stores its last channel first in the file. Our first channel must be first.

@@ -69,12 +69,11 @@ cv::Mat1w read_label_image(const std::filesystem::path& path);
 // the aspect ratio by rounding to whole pixels are accepted (same_shape in scene/resolution.h).
 void check_mask_shape(const std::filesystem::path& mask, cv::Size size, cv::Size image);
 
-// Read and write float TIFF files (ground truth) with one or three channels, without loss. The
-// channels have the same order in memory and in the file. Reading gives an Error for a file with
-// another type of pixels. Writing gives an Error for pixels that are not float, and for a file that
-// cannot be written.
+// Read float TIFF files (ground truth) with one channel, and write them with one or three channels,
+// without loss. The channels have the same order in memory and in the file. Reading gives an Error
+// for a file with another type of pixels. Writing gives an Error for pixels that are not float, and
+// for a file that cannot be written.
 cv::Mat1f read_float_tiff(const std::filesystem::path& path);
-cv::Mat3f read_float3_tiff(const std::filesystem::path& path);
 void write_float_tiff(const std::filesystem::path& path, const cv::Mat& image);
 
 // Write an image and replace an existing file. PNG: B G R, B G R alpha or grey, 8 or 16 bits. The

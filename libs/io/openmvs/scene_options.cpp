@@ -2,23 +2,10 @@
 #include "io/openmvs/scene_options.h"
 
 #include "base/error.h"
-#include "base/setting_names.h"
 #include "base/unused_input.h"
 
 namespace axial::io {
 namespace {
-
-constexpr SettingName kSceneOptions[] = {{"allow_missing", "--allow-missing"},
-                                         {"bit_depth", "--bit-depth"},
-                                         {"camera is flat_port", "--camera-model is flatport"},
-                                         {"housing", "--housing"},
-                                         {"ignore_mask_label", "--ignore-mask-label"},
-                                         {"mask_folder", "--mask-path"},
-                                         {"refractive", "--refractive"}};
-
-std::string scene_option(std::string_view setting) {
-  return name_in(kSceneOptions, setting);
-}
 
 PortChoice port_choice(const SceneOptions& options) {
   if (options.camera_model == "auto")
@@ -40,16 +27,18 @@ void declare_scene_options(OptionList& list, SceneOptions& options) {
       .add("housing", &options.housing, "housing file (<scene>.housing.json)")
       .add_with_default("camera-model", &options.camera_model,
                         "auto: as in the housing file, pinhole: ignore the housing file, flatport: "
-                        "require a flat port for every image");
+                        "require a flat port for every image")
+      .sets("camera is flat_port", " is flatport");
   UnusedInput::declare(list, options.allow_missing);
 }
 
 SceneFiles scene_files(const SceneOptions& options, const std::string& input,
-                       const CommonOptions& common) {
+                       const ParsedOptions& parsed) {
+  const CommonOptions& common = parsed.common;
   SceneFiles files{in_working_folder(common, input), common.working_folder,
                    in_working_folder(common, options.housing), port_choice(options)};
   files.allow_missing = options.allow_missing;
-  files.name_of = scene_option;
+  files.name_of = parsed.option_of;
   return files;
 }
 

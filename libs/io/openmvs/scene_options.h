@@ -23,11 +23,10 @@ struct SceneOptions {
 void declare_scene_options(OptionList& list, SceneOptions& options);
 
 // Returns the files of the scene `input`. `input` and `options.housing` may be relative to the
-// working folder of `common`. Messages about these files, and about the photographs and masks of
+// working folder of `parsed`. Messages about these files, and about the photographs and masks of
 // the scene, call settings by the names of options. Error for a camera model other than auto,
-// pinhole and flatport. Error if --refractive or
-// --housing is combined with --camera-model pinhole.
+// pinhole and flatport. Error if --refractive or --housing is combined with --camera-model pinhole.
 SceneFiles scene_files(const SceneOptions& options, const std::string& input,
-                       const CommonOptions& common);
+                       const ParsedOptions& parsed);
 
 }  // namespace axial::io

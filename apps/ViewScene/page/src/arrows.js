@@ -40,7 +40,7 @@ function scaleOf(lengths, noise) {
   return roundUp(Math.max(0.5 * noise, 0.001, lengths[Math.floor(0.97 * (lengths.length - 1))] ?? 0));
 }
 
-/** The picture of `grid` (libs/pose/residual_pattern.h) for an image of `size` pixels, the error [px]
+/** The picture of `grid` (libs/diagnosis/residual_pattern.h) for an image of `size` pixels, the error [px]
  * of the last colour, and the magnification of the arrows. `noise`: of one error [px]. `photo`: the
  * file behind the arrows, or null. */
 export function drawArrows(grid, size, noise, photo) {

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/naming.h"
+#include "diagnosis/words.h"
+#include "scale_from.h"
+#include "stages.h"
+#include "usual_housing.h"
+
+namespace axial::apps {
+namespace {
+
+// Known positions place the model, so its local frame must be near them.
+LocalFrame enter_local_frame(std::vector<pose::KnownPosition>& positions) {
+  std::vector<Eigen::Vector3d> centres;
+  centres.reserve(positions.size());
+  for (const pose::KnownPosition& known : positions) centres.push_back(known.metres);
+  const LocalFrame frame = frame_of(centres, {});
+  if (frame.is_world()) return frame;
+  for (pose::KnownPosition& known : positions) known.metres = frame.to_local(known.metres);
+  return frame;
+}
+
+// The kind of port for --housing unknown. `bundle` is behind usual flat ports and is brought to
+// metres. `progress` gets the errors of each kind. Without a port, cameras are those behind a dome
+// around the camera centre.
+pose::PortKind likely_kind(pose::Bundle& bundle, const pose::AdjustOptions& adjust,
+                           const pose::TextSink& progress) {
+  pose::bring_to_metres(bundle, adjust);
+  const std::vector<diagnosis::KindFit> fits = diagnosis::fits_of_kinds(bundle, adjust);
+  const auto better = diagnosis::better_kind(fits);
+  for (const diagnosis::KindFit& fit : fits)
+    progress(
+        fmt::format("With {}, errors are {:.3g} px", diagnosis::words_for(fit.kind), fit.error));
+  return better ? pose::PortKind::dome : pose::PortKind::flat;
+}
+
+bool are_possible(const io::Housing& housing) {
+  try {
+    for (const auto& [name, port] : housing.ports) io::check_port(port, name);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+// Writes lines of progress to the log.
+class ProgressLines {
+ public:
+  void log(const std::string& line) {
+    last_ = Clock::now();
+    log_info("{}", line);
+  }
+  // Writes the line only if the last one is two seconds old, so that small models do not fill the
+  // log.
+  void log_if_due(const std::string& line) {
+    if (Clock::now() - last_ >= std::chrono::seconds(2)) log(line);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
+};
+
+// Refines a bundle from its start, and again if its input must change.
+class Refining {
+ public:
+  Refining(Options& options, Input& input, UnusedInput& unused)
+      : options_(options), input_(input), unused_(unused) {
+    refined_.after = bundle_of(options, input, input.housing);
+    check_ports(options, input, bundle());
+    set_known();
+  }
+
+  void find_unknown_kind();
+  void refine_with_or_without_scale();
+  void try_another_kind();
+  void tell_input() const;
+  Refined take();
+
+ private:
+  const pose::Bundle& bundle() const { return refined_.after.bundle; }
+  void set_known();
+  // Makes the bundle anew, with the present housing of the input.
+  void start_again() {
+    refined_.after = bundle_of(options_, input_, input_.housing);
+    set_known();
+  }
+  void start_with(pose::PortKind kind) {
+    input_.housing = usual_housing(kind);
+    start_again();
+  }
+  void refine_once();
+
+  Options& options_;
+  Input& input_;
+  UnusedInput& unused_;
+  Refined refined_;
+};
+
+void Refining::set_known() {
+  pose::AdjustOptions& adjust = options_.refine.adjust;
+  adjust = {};
+  options_.dropped_positions =
+      add_known(options_.scale_from, options_.scale_sigma, options_.parsed.common.working_folder,
+                bundle(), adjust, unused_);
+  adjust.poses_known = options_.poses == "known";
+  pose::set_estimated_numbers(options_.refine_list, options_.sigmas, bundle(), adjust,
+                              options_.parsed.option_of);
+  options_.refine.keep_stated = options_.refine_list == "auto";
+  refined_.frame = adjust.positions.empty() ? input_.frame : enter_local_frame(adjust.positions);
+}
+
+void Refining::find_unknown_kind() {
+  if (options_.usual_housing != "unknown") return;
+  pose::Bundle bundle = refined_.after.bundle;
+  const pose::PortKind kind = likely_kind(bundle, options_.refine.adjust,
+                                          [](const std::string& line) { log_info("{}", line); });
+  log_info("The housing is taken for {}", diagnosis::words_for(kind));
+  if (kind == pose::PortKind::dome) start_with(kind);
+}
+
+void Refining::tell_input() const {
+  log_info("{}: {} images, {} points, {} observations", input_.folder.string(),
+           input_.model.images.size(), input_.model.points.size(), bundle().observations.size());
+  if (refined_.after.unseen > 0)
+    log_warning("{} observations lie at pixels for which the lens in air has no ray",
+                refined_.after.unseen);
+}
+
+void Refining::refine_once() {
+  pose::Bundle& bundle = refined_.after.bundle;
+  pose::bring_to_metres(bundle, options_.refine.adjust);
+  log_info("Starts with points at a median distance of {:.3g} m", pose::median_distance(bundle));
+  refined_.before = bundle;
+  ProgressLines lines;
+  refined_.report = naming(options_.model, [&] {
+    return pose::refine(
+        bundle, options_.refine, [&](const std::string& line) { lines.log(line); },
+        [&](const std::string& line) { lines.log_if_due(line); });
+  });
+}
+
+// If refining drops the images or points that --scale-from names, reports this, clears
+// --scale-from, and refines once more from the start.
+void Refining::refine_with_or_without_scale() {
+  refine_once();
+  if (refined_.report.lost.empty()) return;
+  unused_.report("--scale-from " + options_.scale_from + ": " + refined_.report.lost.front());
+  options_.scale_from.clear();
+  start_again();
+  refine_once();
+}
+
+// Refines again, after a warning, with a kind of port that the photographs fit better than the
+// stated kind, if the numbers of the stated kind moved so far that the refined port is impossible.
+void Refining::try_another_kind() {
+  if (are_possible(to_housing(refined_.after, input_.housing))) return;
+  const std::optional<OtherKind> other = other_kind(options_, refined_.before);
+  if (!other || other->kind == pose::PortKind::none) return;
+  log_warning(
+      "{}; the poses are refined again, with the usual numbers of {}: state the right kind "
+      "of housing",
+      other->evidence, diagnosis::words_for(other->kind));
+  start_with(other->kind);
+  options_.usual_housing = "unknown";
+  refine_with_or_without_scale();
+}
+
+// The result. uncertainty() needs the positions that the last adjustment used.
+Refined Refining::take() {
+  options_.refine.adjust.positions = refined_.report.positions;
+  return std::move(refined_);
+}
+
+}  // namespace
+
+std::optional<Registered> register_photographs(const Options& options, Input& input) {
+  // With poses of all photographs, the tracks are those of COLMAP.
+  if (!input.left_out || !input.left_out->any(input.model)) return {};
+  pose::Bundle bundle = bundle_of(options, input, input.housing).bundle;
+  pose::RefineOptions refining = options.refine;
+  refining.adjust.distances = known_lengths(options.scale_from, options.scale_sigma, bundle);
+  if (options.usual_housing == "unknown" &&
+      likely_kind(bundle, refining.adjust, [](const std::string&) {}) == pose::PortKind::dome)
+    bundle = bundle_of(options, input, usual_housing(pose::PortKind::dome)).bundle;
+  pose::set_estimated_numbers(options.refine_list, options.sigmas, bundle, refining.adjust,
+                              options.parsed.option_of);
+  log_info("{}: seeks poses of {} photographs without a pose among {} with poses",
+           options.database.string(), input.model.images.size() - input.left_out->first,
+           input.left_out->first);
+  Registered registered = naming(options.model, [&] {
+    return register_left_out(input.model, *input.left_out, std::move(bundle), refining,
+                             [](const std::string& line) { log_info("Registering: {}", line); });
+  });
+  input.left_out.reset();
+  log_registered(registered);
+  return registered;
+}
+
+Refined refine(Options& options, Input& input, UnusedInput& unused) {
+  Refining refining(options, input, unused);
+  refining.find_unknown_kind();
+  refining.tell_input();
+  refining.refine_with_or_without_scale();
+  refining.try_another_kind();
+  return refining.take();
+}
+
+}  // namespace axial::apps
