@@ -28,6 +28,7 @@ void finish(const Options& options, const Input& input, const Refined& refined,
   judge(options, refined, results);
   const pose::Uncertainty known = write(options, input, refined, results);
   for (const std::string& line : uncertainty_lines(results, known)) log_info("{}", line);
+  if (!results.options.poses_known) log_info("{}", shape_line(known));
   judge_numbers(options, known, results);
 }
 

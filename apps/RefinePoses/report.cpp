@@ -49,6 +49,23 @@ double scale_sigma(const Results& results, double sigma) {
   return results.scale_lost ? std::numeric_limits<double>::infinity() : sigma;
 }
 
+// Uncertainty::shape_sigma, for sentences about the shape of the model.
+std::string shape_in_words(const pose::Uncertainty& known) {
+  if (!std::isfinite(known.shape_sigma)) return "unknown";
+  return fmt::format(
+      "known to {:.2g} % of the distance of the points (one standard deviation of the cameras' "
+      "centres relative to each other)",
+      100 * known.shape_sigma);
+}
+
+// The largest distance between the first camera and another camera.
+double length_of(const Bundle& bundle) {
+  double length = 0;
+  for (const pose::BundleImage& image : bundle.images)
+    length = std::max(length, (image.pose.centre - bundle.images.front().pose.centre).norm());
+  return length;
+}
+
 // JSON has no infinity: null means that nothing determines the number.
 nlohmann::ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
@@ -94,6 +111,7 @@ pose::Uncertainty not_computed(const Results& results) {
   none.camera_sigmas.assign(results.bundle.cameras.size(),
                             pose::HousingChange<double>::Constant(kInfinite));
   none.scale_sigma = results.options.poses_known ? 0 : kInfinite;
+  none.shape_sigma = none.scale_sigma;
   return none;
 }
 
@@ -187,6 +205,22 @@ std::optional<std::string> scale_warning(const Results& results, const pose::Unc
       known_to);
 }
 
+std::string shape_line(const pose::Uncertainty& known) {
+  return fmt::format("The shape of the model is {}", shape_in_words(known));
+}
+
+std::optional<std::string> shape_warning(const Results& results, const pose::Uncertainty& known) {
+  constexpr double kLargest = 0.002, kLargestOfLength = 1.0 / 2000;
+  const double sigma = known.shape_sigma * pose::median_distance(results.bundle);
+  if (known.shape_sigma <= kLargest || sigma <= kLargestOfLength * length_of(results.bundle))
+    return {};
+  return fmt::format(
+      "{}, and least at {}: too few points link the photographs, so that "
+      "the model can be bent. Take photographs that overlap by 60 % or more along strips, or strips "
+      "that cross, or state positions with --scale-from",
+      shape_line(known), results.bundle.images[known.least_linked].name);
+}
+
 std::string report_json(const Results& results, const pose::Uncertainty* known) {
   using Json = nlohmann::ordered_json;
   const pose::RefineReport& report = results.report;
@@ -200,6 +234,7 @@ std::string report_json(const Results& results, const pose::Uncertainty* known) 
             {"points_before", report.points_before},
             {"points_after", report.points_after}};
   json["scale_sigma"] = finite_or_null(scale_sigma(results, uncertainty.scale_sigma));
+  json["shape_sigma"] = finite_or_null(uncertainty.shape_sigma);
   if (!known) json["standard_deviations"] = "missing";
   if (Json positions = positions_json(report); !positions.is_null())
     json["positions"] = std::move(positions);

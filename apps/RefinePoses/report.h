@@ -54,6 +54,13 @@ std::vector<std::string> uncertainty_lines(const Results& results, const pose::U
 // more than 2 % or not at all.
 std::optional<std::string> scale_warning(const Results& results, const pose::Uncertainty& known);
 
+// Returns the line for the log about Uncertainty::shape_sigma.
+std::string shape_line(const pose::Uncertainty& known);
+
+// Returns a warning if the centres of the cameras are known to more than 0.2 % of the distance of
+// the points relative to each other, and to more than 1/2000 of the length of the survey.
+std::optional<std::string> shape_warning(const Results& results, const pose::Uncertainty& known);
+
 // Returns the report as JSON. Numbers that are not known are null. If `known`, the standard
 // deviations of the refinement, is null, all standard deviations are null, and the report says that
 // they are missing.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 
 namespace axial::pose {
@@ -79,6 +80,16 @@ std::vector<double> reprojection_errors(const Bundle& bundle) {
   };
   parallel_for(errors.size(), set_error, kPointGrain);
   return errors;
+}
+
+double median_distance(const Bundle& bundle) {
+  std::vector<double> distances;
+  for (const Observation& observation : bundle.observations)
+    distances.push_back(
+        (bundle.points[observation.point].position - bundle.images[observation.image].pose.centre)
+            .norm());
+  if (distances.empty()) fail("the model has no observations");
+  return upper_median(std::move(distances));
 }
 
 std::vector<std::vector<double>> reprojection_errors_by_image(const Bundle& bundle) {

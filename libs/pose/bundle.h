@@ -95,6 +95,10 @@ double reprojection_error(const PhotographCamera& camera, const Pose& pose,
 // observations.
 std::vector<double> reprojection_errors(const Bundle& bundle);
 
+// The median, over all observations, of the distance [m] from the camera centre to the point.
+// Throws an Error if the bundle has no observations.
+double median_distance(const Bundle& bundle);
+
 // The reprojection errors [px of the photograph] in one list for each image, in the order of
 // Bundle::images. Within a list, the errors have the order of the observations. The list of an
 // image without observations is empty.

@@ -130,16 +130,6 @@ bool keep_stated_numbers(Bundle& bundle, AdjustOptions& options) {
 
 }  // namespace
 
-double median_distance(const Bundle& bundle) {
-  std::vector<double> distances;
-  for (const Observation& observation : bundle.observations)
-    distances.push_back(
-        (bundle.points[observation.point].position - bundle.images[observation.image].pose.centre)
-            .norm());
-  if (distances.empty()) fail("the model has no observations");
-  return upper_median(std::move(distances));
-}
-
 void scale_places(Bundle& bundle, double scale) {
   for (BundleImage& image : bundle.images) image.pose.centre *= scale;
   for (BundlePoint& point : bundle.points) point.position *= scale;

@@ -86,10 +86,6 @@ void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink& progress = {},
                     const TextSink& iterations = {});
 
-// The median, over all observations, of the distance [m] from the camera centre to the point.
-// Throws an Error if the bundle has no observations.
-double median_distance(const Bundle& bundle);
-
 // Multiplies the coordinates of all camera centres and points by `scale`.
 void scale_places(Bundle& bundle, double scale);
 

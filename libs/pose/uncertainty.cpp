@@ -11,6 +11,7 @@
 
 #include "pose/adjust.h"
 #include "pose/adjust_problem.h"
+#include "pose/shape_sigma.h"
 #include "pose/sparse_cholesky.h"
 #include "scene/decompositions.h"
 
@@ -228,7 +229,50 @@ class Normal {
     return std::sqrt(variance) / baseline.norm();
   }
 
+  // Uncertainty::shape_sigma and Uncertainty::least_linked.
+  void find_shape(Uncertainty& result) {
+    const std::vector<std::size_t> images = sample_of_images();
+    const auto count = static_cast<Eigen::Index>(images.size());
+    Eigen::Matrix3Xd centres(3, count);
+    Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(unknowns_, 3 * count), moved = directions;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const std::size_t image = images[static_cast<std::size_t>(i)];
+      centres.col(i) = bundle_.images[image].pose.centre;
+      for (int k = 0; k < 3; ++k) {
+        const Eigen::Index column = 3 * i + k;
+        Eigen::VectorXd direction = Eigen::VectorXd::Zero(unknowns_);
+        add_centre(image, Eigen::Vector3d::Unit(k), direction);
+        directions.col(column) = direction;
+        moved.col(column) = covariance_->times(direction);
+      }
+    }
+    Eigen::MatrixXd covariance = directions.transpose() * moved;
+    if (!fixed_.empty()) {
+      const Eigen::MatrixXd by_fixed = by_fixed_.transpose() * moved;
+      covariance += by_fixed.transpose() * by_fixed;
+    }
+    const Eigen::VectorXd sigmas = sigmas_after_similarity(centres, covariance);
+    Eigen::Index largest = 0;
+    sigmas.maxCoeff(&largest);
+    result.least_linked = images[static_cast<std::size_t>(largest)];
+    const double sigma = std::sqrt(sigmas.squaredNorm() / static_cast<double>(count));
+    const double extent = (centres.colwise() - centres.col(0)).colwise().norm().maxCoeff();
+    result.shape_sigma = sigma < extent ? sigma / median_distance(bundle_) : kInfinite;
+  }
+
  private:
+  // Up to 16 images with observations, spread evenly over all of them.
+  std::vector<std::size_t> sample_of_images() const {
+    std::vector<std::size_t> observed;
+    for (std::size_t i = 0; i < bundle_.images.size(); ++i)
+      if (problem_.is_observed(i)) observed.push_back(i);
+    const std::size_t count = std::min<std::size_t>(16, observed.size());
+    std::vector<std::size_t> sample;
+    for (std::size_t k = 0; k < count; ++k)
+      sample.push_back(observed[count == 1 ? 0 : k * (observed.size() - 1) / (count - 1)]);
+    return sample;
+  }
+
   std::size_t farthest_from(std::size_t from) const {
     std::size_t farthest = from;
     double largest = 0;
@@ -338,7 +382,9 @@ Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options,
   Normal normal(bundle, weighed, progress);
   for (std::size_t camera = 0; camera < bundle.cameras.size(); ++camera)
     result.camera_sigmas.push_back(normal.sigmas_of_camera(camera));
-  if (!options.poses_known) result.scale_sigma = normal.sigma_of_scale();
+  if (options.poses_known) return result;
+  result.scale_sigma = normal.sigma_of_scale();
+  normal.find_shape(result);
   return result;
 }
 

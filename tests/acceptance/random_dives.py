@@ -8,6 +8,7 @@ measures the dives with these numbers and prints a table. The acceptance point `
 
 import argparse
 import dataclasses
+import math
 import pathlib
 import random
 import sys
@@ -68,7 +69,8 @@ def judged(outcome, right):
     if outcome.code != 0 or outcome.warnings:
         return ""
     faults = []
-    if outcome.median > max(WRONG * right, right + WRONG_LEAST):
+    # Where even the right numbers give no model, no model may come without a word.
+    if math.isinf(right) or outcome.median > max(WRONG * right, right + WRONG_LEAST):
         faults.append(f"error {outcome.median:.2f} mm instead of {right:.2f} mm")
     sigma = outcome.report.get("scale_sigma")
     if sigma is not None and abs(outcome.scale - 1) > LENGTHS * sigma + 0.002:

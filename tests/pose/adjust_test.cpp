@@ -299,22 +299,52 @@ TEST(Uncertainty, OfThePortIsHonestWithTheDefaultLoss) {
   }
 }
 
-TEST(Uncertainty, OfTheScaleIsHonest) {
+TEST(Uncertainty, OfScaleAndShapeIsHonest) {
   constexpr int kRuns = 30;
   const Bundle exact = survey(camera_behind(flat_port(0, 0.1)), {.images = 8, .points = 150});
-  double sum2 = 0, predicted2 = 0;
+  double sum2 = 0, predicted2 = 0, shape2 = 0, predicted_shape2 = 0;
   for (int run = 0; run < kRuns; ++run) {
     Bundle bundle = with_noise(exact, 0.5, run);
     AdjustOptions options;
     options.pixel_sigma = 0.5;
     options.loss_sigmas = 100;
     adjust(bundle, options);
-    const double error = 1 / pose_errors(bundle, exact).scale - 1;
-    sum2 += error * error;
-    predicted2 += std::pow(uncertainty(bundle, options).scale_sigma, 2);
+    const testing::PoseErrors errors = pose_errors(bundle, exact);
+    sum2 += std::pow(1 / errors.scale - 1, 2);
+    shape2 += std::pow(errors.centre_rms, 2);
+    const Uncertainty known = uncertainty(bundle, options);
+    predicted2 += std::pow(known.scale_sigma, 2);
+    predicted_shape2 += std::pow(known.shape_sigma * median_distance(bundle), 2);
   }
   EXPECT_GT(sum2 / predicted2, 0.3);  // the same limits as for the port
   EXPECT_LT(sum2 / predicted2, 1.9);
+  // A shape has at least four independent errors: the ratio scatters by sqrt(2 / 120) = 13 %.
+  EXPECT_NEAR(shape2 / predicted_shape2, 1, 0.39);
+}
+
+TEST(Uncertainty, OfTheShapeDoesNotDependOnTheScale) {
+  const Bundle bundle = survey(camera_behind(std::nullopt), {.noise = 0.5});
+  AdjustOptions options;
+  const double without = uncertainty(bundle, options).shape_sigma;
+  options.distances.push_back(known_length(bundle, 0.02));
+  const double with = uncertainty(bundle, options).shape_sigma;
+  EXPECT_NEAR(without, with, 1e-3 * with);
+  EXPECT_GT(with, 0);
+}
+
+// The two halves of a survey, with all common points or with four of them. Images of the same half
+// have as many common points in both cases.
+TEST(Uncertainty, OfTheShapeIsLargeWhereFewPointsLinkTheImages) {
+  const Bundle whole = survey(camera_behind(flat_port()), {.images = 8, .noise = 0.5});
+  Bundle weak = whole;
+  for (BundlePoint point : whole.points) weak.points.push_back(point);
+  for (Observation& observation : weak.observations)
+    if (observation.image >= 4 && observation.point >= 4) observation.point += whole.points.size();
+  AdjustOptions options;
+  options.distances.push_back(known_length(whole));
+  const double sigma = uncertainty(whole, options).shape_sigma;
+  EXPECT_GT(uncertainty(weak, options).shape_sigma, 3 * sigma);
+  EXPECT_LT(sigma, 0.003);
 }
 
 // Starts from a distance with an error of 5 mm and a tilt with an error of 1 degree.

@@ -26,6 +26,7 @@ using apps::report_json;
 using apps::Results;
 using apps::uncertainty_lines;
 using apps::write_results;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 class WriteResults : public ::testing::Test {
@@ -127,6 +128,23 @@ TEST_F(WriteResults, AModelWithoutScaleSaysSo) {
   }
   EXPECT_THAT(uncertainty_lines(results(), known()).back(), HasSubstr("known to 1 %"));
   EXPECT_EQ(nlohmann::json::parse(report_json(lost, nullptr))["unused"].size(), 1u);
+}
+
+// The warning is about a survey whose links are weak, and not about a long survey with the usual
+// errors of long surveys.
+TEST_F(WriteResults, WarnsOfAWeakShape) {
+  Uncertainty uncertain = known();
+  EXPECT_FALSE(apps::shape_warning(results(), uncertain));
+  bundle_.images[2].name = "third.jpg";
+  uncertain.shape_sigma = 0.01;
+  uncertain.least_linked = 2;
+  EXPECT_THAT(apps::shape_warning(results(), uncertain).value(),
+              AllOf(HasSubstr("known to 1 % of the distance"), HasSubstr("third.jpg")));
+  uncertain.shape_sigma = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(apps::shape_warning(results(), uncertain).value(), HasSubstr("is unknown"));
+  uncertain.shape_sigma = 0.01;
+  bundle_.images.back().pose.centre.x() += 1000 * median_distance(bundle_);
+  EXPECT_FALSE(apps::shape_warning(results(), uncertain));
 }
 
 }  // namespace

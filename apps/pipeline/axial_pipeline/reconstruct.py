@@ -37,6 +37,11 @@ def lines_of_poses(refined):
         yield "- the scale is not known"
     elif sigma != 0:  # 0: the poses were known
         yield f"- the scale is known to {100 * sigma:.2g} % (one standard deviation)"
+    shape = refined["shape_sigma"]
+    if shape is None:
+        yield "- the shape is not known"
+    elif shape != 0:
+        yield f"- the shape is known to {100 * shape:.2g} % of the distance of the points (one standard deviation)"
     for camera in refined["cameras"]:
         for value in camera["free"]:
             yield f"- camera {camera['id']}, {value['name']}: {line_of_value(value)}"
