@@ -88,6 +88,7 @@ void convert(const Raw& raw, Options& options) {
       output_or(settings.output, without_known_extension(scene) += "_map", "--output-file");
   settings.up = map::parse_up(raw.up, settings.epsg, options.parsed.option_of);
   take_photographs(options, raw, settings.survey);
+  settings.survey.memory.setting = "--max-memory";
 }
 
 }  // namespace

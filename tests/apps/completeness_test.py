@@ -78,11 +78,11 @@ class WrongInput(ProgramTest):
     def test_is_refused(self):
         def refuses(said, *arguments):
             self.refuses(said, PROGRAM, "completeness", "-o", self.path("a"), *arguments)
-        refuses("--medium is 'ice'", "--medium", "ice")
-        refuses("--poses is 'mine'", "--poses", "mine")
+        refuses("--medium ice: must be", "--medium", "ice")
+        refuses("--poses mine: must be", "--poses", "mine")
         refuses("--seeds 1,x", "--seeds", "1,x")
         refuses("--seeds names 3 twice", "--seeds", "3,4,3")
-        refuses("--tolerance is -1", "--tolerance", "-1")
+        refuses("--tolerance -1: must be", "--tolerance", "-1")
 
     def test_options_of_its_own_are_without_effect_elsewhere(self):
         result = run(PROGRAM, "figure3", "--quick", "--medium", "air", "-o", self.path("a"))

@@ -153,7 +153,7 @@ class ViewFolder(ViewCase):
                 else:
                     command += [name, value]
             self.refuses_and_keeps(expected, *command)
-        self.refuses_and_keeps("--report: give the folder", *self.view()[:-2])
+        self.refuses_and_keeps("--report is missing", *self.view()[:-2])
 
     def test_a_photograph_that_does_not_fit_is_refused(self):
         whole = read(self.images[1])

@@ -148,10 +148,12 @@ TEST_F(Programs, RefuseToRender) {
           "-i textured.ply --cameras true --render 7.jpg --render-folder out");
   refuses("--render ,0001.jpg",
           "-i textured.ply --cameras true --render ,0001.jpg --render-folder o");
-  refuses("--render-type is gif", "-i textured.ply --render-folder out --render-type gif" + views);
-  refuses("--render-samples is 0",
+  refuses("--render-type gif: must be",
+          "-i textured.ply --render-folder out --render-type gif" + views);
+  refuses("--render-samples 0: must be",
           "-i textured.ply --render-folder out --render-samples 0" + views);
-  refuses("--render-width is -1", "-i textured.ply --render-folder out --render-width -1" + views);
+  refuses("--render-width -1: must be",
+          "-i textured.ply --render-folder out --render-width -1" + views);
   refuses("--render-width 100: photographs",
           "-i textured.ply --photographs . --render-width 100" + views);
   refuses("truth.ply: the mesh has neither", "-i truth.ply --render-folder out" + views);

@@ -107,7 +107,7 @@ TEST_F(Programs, CountTheWorthOfThePointsThatCount) {
   EXPECT_NEAR(json["points_by_views"][0]["share"].get<double>(), 0.25, 0.03);
   refuses("not a strip", "-i cloud.ply -m truth.ply --cameras true --samples 5000 --strip");
   refuses("--strip needs --cameras", "-i cloud.ply -m truth.ply --strip");
-  refuses("--gross is -1", "-i cloud.ply -m truth.ply --gross -1");
+  refuses("--gross -1: must be", "-i cloud.ply -m truth.ply --gross -1");
 }
 
 TEST_F(Programs, WarnOfHousingEntriesWithoutAnImage) {

@@ -154,12 +154,12 @@ TEST_F(SimulateUnderwater, RefusesWrongOptionsInOneLine) {
   refuses("preset 'lake' is unknown", "-o a --preset lake");
   refuses("number of views is -2", "-o a --views -2");
   refuses("width is 0", "-o a --width 0");
-  refuses("--samples is 0", "-o a --samples 0");
-  refuses("--noise is -1", "-o a --noise -1");
-  refuses("--haze is 1.5", "-o a --haze 1.5");
-  refuses("--jpeg-quality is 101", "-o a --jpeg-quality 101");
-  refuses("--medium is 'fog'", "-o a --medium fog");
-  refuses("--tilt-degrees is 80", "-o a --tilt-degrees 80");
+  refuses("--samples 0: must be", "-o a --samples 0");
+  refuses("--noise -1: must be", "-o a --noise -1");
+  refuses("--haze 1.5: must be", "-o a --haze 1.5");
+  refuses("--jpeg-quality 101: must be", "-o a --jpeg-quality 101");
+  refuses("--medium fog: must be", "-o a --medium fog");
+  refuses("--tilt-degrees 80: must be", "-o a --tilt-degrees 80");
   refuses("port distance is 2", "-o a --port-distance 2");
   refuses("refractive index is 0.5", "-o a --n-water 0.5");
   refuses("refractive index is nan", "-o a --n-glass nan");
