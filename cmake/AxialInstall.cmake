@@ -51,7 +51,7 @@ foreach(library IN LISTS AXIAL_LIBRARIES)
     set(headers libs/${library})
   endif()
   install(DIRECTORY ${headers} DESTINATION ${include_dir} COMPONENT development
-    FILES_MATCHING PATTERN "*.h" PATTERN private EXCLUDE)
+    FILES_MATCHING PATTERN "*.h" PATTERN LICENSE PATTERN private EXCLUDE)
 endforeach()
 install(EXPORT AxialMVSTargets NAMESPACE Axial:: DESTINATION ${package_dir} COMPONENT development)
 configure_package_config_file(cmake/AxialMVSConfig.cmake.in ${PROJECT_BINARY_DIR}/AxialMVSConfig.cmake

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The warp of a plane between two axial cameras maps the pixel of a point of the plane in the
 // reference image to the pixel of the same point in the source image. This file computes the exact
 // value and the exact first derivative of the warp at a pixel p (docs/refraction.md, "The warp").

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The axial camera, the camera model of the whole project. The scene medium is the medium that
 // contains the imaged points: water for a camera behind a port, air for a camera without a port.
 // The lines of all pixels' rays in the scene medium meet one axis through the camera centre. A

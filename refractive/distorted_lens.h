@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // A lens with distortion: converts between pixels and tangents. The tangents (u, v) stand for the
 // direction in air (u, v, 1) in the camera frame. e is the plane point of lens_distortion.h.
 #pragma once

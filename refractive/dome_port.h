@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // A dome port: a spherical shell of glass, with centre C, between the lens and the water. The
 // camera centre may lie anywhere within the inner sphere. docs/refraction.md explains the formulas.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // A pinhole lens behind a dome port: the exact axial camera. C_v and C are defined in dome_port.h.
 // The ray of a pixel has a closed form.
 // The projection of a point is the root of one scalar equation (dome_port_projector.h). The axis

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The exact forward projection through a dome port. Camera frame, metres. The symbols are those of
 // dome_port.h.
 //

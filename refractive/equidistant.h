@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The equidistant fisheye. A direction in air at the angle theta from the optical axis has the
 // tangents (x/z, y/z) of length r = tan(theta), and is imaged at the distance theta from the centre
 // of the image plane. The ratios theta/tan(theta) and tan(theta)/theta are computed from r^2 and

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // A flat port: a plate of glass with parallel faces between the lens and the water.
 // docs/refraction.md derives the formulas.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // A pinhole lens behind a flat port: the exact axial camera. The ray of a pixel has a closed form.
 // The projection of a point is the root of one scalar equation (flat_port_solver.h). The
 // derivatives of rays and projections have closed forms.

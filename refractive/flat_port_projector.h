@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The exact forward projection through a flat port, in the port's frame: origin where the axis
 // meets the outer plane, z along the port's normal into the water, metres.
 #pragma once

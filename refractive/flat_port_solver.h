@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The equation of the exact forward projection through a flat port (axis frame, metres). Consider
 // a point at the distance rho from the axis and at the height z_water above the outer plane. The
 // in-air tangent t of the ray through this point is the root of

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // A camera whose lens has distortion, without a port, or behind a flat port or a dome. The camera
 // combines two parts. A DistortedLens maps tangents in air to pixels. An inner camera of this
 // folder, whose lens has no distortion, maps points to tangents: the "pixels" of the inner camera

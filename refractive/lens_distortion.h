@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The distortion of a lens. One formula covers all of COLMAP's polynomial models, including the
 // fisheyes, and its FOV model. COLMAP's documentation describes the camera models.
 //

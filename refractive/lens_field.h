@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The field of a lens: how far from the optical axis its distortion model is valid. The polynomial
 // of a lens may stop growing beyond the field to which it was fitted. The polynomial then maps
 // directions beyond the field to pixels at which the lens images other directions.

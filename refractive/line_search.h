@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The paper's forward projection (Algorithm 1; docs/refraction.md names the paper). The algorithm
 // bisects the line in which the plane of refraction meets the image. It uses only a table of the
 // pixels' rays. Its error is about a quarter of a pixel. It is here for comparisons, and for

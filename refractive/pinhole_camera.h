@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // A pinhole lens, and the camera that has this lens and no port.
 #pragma once
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The paper's lookup table L(pixel) = {C_v, X_v, c_v}: an axial camera as a table of the rays of
 // its pixels. C_v is the origin and X_v the direction of the pixel's ray in water. c_v is the
 // principal point of the pixel's virtual camera (virtual_camera.h). docs/refraction.md names the

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The forward projection through a flat port as a root of a polynomial of degree 12. It is a
 // reference for tests, slower and less accurate than FlatPortCamera::project().
 //

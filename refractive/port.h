@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // A port of either kind: flat (FlatPort) or dome (DomePort).
 #pragma once
 

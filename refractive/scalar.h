@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The operations that the cameras need from a scalar type besides arithmetic. With these
 // operations, one implementation serves float, double, automatic-differentiation scalars and SIMD
 // packs. A SIMD pack has to define the mask type that its comparisons return, with the operator &&.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The paper's virtual cameras. The virtual camera of a pixel of an axial camera is a pinhole. Its
 // centre is C_v, the origin of the pixel's ray in water. It looks along the port's normal, or
 // behind a dome along the optical axis of the lens. It has the focal lengths of the real lens

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The image rectangle, widened by a margin on every side. A point is visible to a camera behind a
 // port, or through a lens with distortion, only if its pixel lies in this rectangle.
 #pragma once
