@@ -216,7 +216,8 @@ std::optional<std::string> shape_warning(const Results& results, const pose::Unc
     return {};
   return fmt::format(
       "{}, and least at {}: too few points link the photographs, so that "
-      "the model can be bent. Take photographs that overlap by 60 % or more along strips, or strips "
+      "the model can be bent. Take photographs that overlap by 60 % or more along strips, or "
+      "strips "
       "that cross, or state positions with --scale-from",
       shape_line(known), results.bundle.images[known.least_linked].name);
 }
