@@ -5,12 +5,12 @@
 #include <system_error>
 #include <vector>
 
+#include "base/console.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/naming.h"
 #include "base/output_lock.h"
 #include "base/parallel.h"
-#include "base/progress.h"
 #include "belong/surface_check.h"
 #include "compare/write_changes.h"
 #include "geometry/seen_part.h"
@@ -76,7 +76,8 @@ struct MeshFile {
 
 // The photographs of a survey, in the frame of the meshes. None without a scene.
 std::vector<geometry::PosedCamera> read_photos(const Settings& settings, const fs::path& path,
-                                               const LocalFrame& frame, const MeshFile& survey) {
+                                               const LocalFrame& frame, const MeshFile& survey,
+                                               const Context& context) {
   std::vector<geometry::PosedCamera> photos;
   if (path.empty()) return photos;
   survey::Options options;
@@ -87,7 +88,7 @@ std::vector<geometry::PosedCamera> read_photos(const Settings& settings, const f
   enter(LocalFrame{frame.origin - scene.frame.origin}, scene.scene);
   photos = geometry::posed_cameras(scene.scene);
   if (photos.empty()) fail("{}: has no calibrated image", path.string());
-  belong::check_surface(scene.scene, belong::shape_of(survey.mesh), {survey.path, path});
+  belong::check_surface(scene.scene, belong::shape_of(survey.mesh), {survey.path, path}, context);
   return photos;
 }
 
@@ -125,14 +126,15 @@ struct NearSide {
 
 // Removes stray faces of the survey if its photographs are known.
 NearSide near_side(const Settings& settings, const fs::path& path,
-                   const std::vector<geometry::PosedCamera>& photos, Mesh& mesh) {
+                   const std::vector<geometry::PosedCamera>& photos, Mesh& mesh,
+                   const Context& context) {
   return naming(path, [&]() -> NearSide {
     const Eigen::Vector3d turned = compare::mean_normal(mesh);
     if (photos.empty()) return {path, false, turned};
     settings.compare.memory.require(geometry::bytes_of_sights(mesh), "what the cameras see");
     const geometry::SeenPart part = geometry::find_seen_part(mesh, photos);
-    geometry::warn_if_inside_out(part, path);
-    geometry::warn_of_strays(part, path, mesh.faces.size());
+    geometry::warn_if_inside_out(part, path, context);
+    geometry::warn_of_strays(part, path, mesh.faces.size(), context);
     geometry::erase_at(part.strays, mesh.faces);
     return_freed_memory();
     if (part.facing.isZero(0)) return {path, false, turned};
@@ -249,6 +251,7 @@ int run(int argc, char** argv) {
   share_one_heap();
   Settings settings = options.settings;
   settings.compare.memory = {settings.max_memory, "--max-memory", 96 * kMegabyte};
+  const Context context(console_events());
   const ThreadLimit limit(options.parsed.common.max_threads);
   compare::ChangeFacts facts{settings.before.filename().string(),
                              settings.after.filename().string()};
@@ -259,23 +262,22 @@ int run(int argc, char** argv) {
   Mesh before = read_survey(settings, settings.before, settings.scene_before, frame);
   Mesh after = read_survey(settings, settings.after, settings.scene_after, frame);
   settings.compare.photos.before =
-      read_photos(settings, settings.scene_before, frame, {before, settings.before});
+      read_photos(settings, settings.scene_before, frame, {before, settings.before}, context);
   settings.compare.photos.after =
-      read_photos(settings, settings.scene_after, frame, {after, settings.after});
+      read_photos(settings, settings.scene_after, frame, {after, settings.after}, context);
   return_freed_memory();
   facts.aligned = settings.compare.align;
   const NearSide near_before =
-      near_side(settings, settings.before, settings.compare.photos.before, before);
+      near_side(settings, settings.before, settings.compare.photos.before, before, context);
   const NearSide near_after =
-      near_side(settings, settings.after, settings.compare.photos.after, after);
+      near_side(settings, settings.after, settings.compare.photos.after, after, context);
   const map::MapFrame map_frame = place_map(settings, before, frame, near_before, near_after);
   facts.is_georeferenced = has_system(settings, frame) && map_frame.axes.isIdentity(0);
   keep_inputs(settings);
   settings.compare.name_before = settings.before;
   settings.compare.name_after = settings.after;
-  settings.compare.progress = console_progress;
   const compare::Comparison comparison =
-      compare::compare_surveys(before, after, map_frame, settings.compare);
+      compare::compare_surveys(before, after, map_frame, settings.compare, context);
   if (settings.compare.align) report_registration(comparison);
   report(comparison);
   const compare::ChangeFiles files = change_files(settings);

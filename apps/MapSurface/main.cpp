@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/console.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/naming.h"
@@ -106,12 +107,12 @@ std::vector<Eigen::Vector3d> centres_of(const survey::Survey& survey) {
 // that the cameras see are those to map. Returns the direction from which they are seen
 // (geometry::SeenPart::facing).
 Eigen::Vector3d keep_seen_part(const Settings& settings, const survey::Survey& survey,
-                               TexturedMesh& mesh) {
+                               TexturedMesh& mesh, const Context& context) {
   settings.survey.memory.require(geometry::bytes_of_sights(mesh.mesh), "what the cameras see");
   const geometry::SeenPart part =
       geometry::find_seen_part(mesh.mesh, survey::posed_cameras(survey));
-  geometry::warn_if_inside_out(part, settings.mesh);
-  geometry::warn_of_strays(part, settings.mesh, mesh.mesh.faces.size());
+  geometry::warn_if_inside_out(part, settings.mesh, context);
+  geometry::warn_of_strays(part, settings.mesh, mesh.mesh.faces.size(), context);
   geometry::erase_at(part.strays, mesh.mesh.faces);
   geometry::erase_at(part.strays, mesh.uv);
   geometry::erase_at(part.strays, mesh.texture_of);
@@ -243,10 +244,10 @@ std::uint64_t left_for_views(const Mesh& mesh, const Settings& settings) {
 // The views of the faces of a mesh that has its textures.
 FaceFacts look_at_faces(const Mesh& mesh, const Settings& settings,
                         const survey::Photographs& photographs,
-                        const std::optional<map::HeightErrors>& errors) {
+                        const std::optional<map::HeightErrors>& errors, const Context& context) {
   const texture::FaceViews seen = texture::find_face_views(
       mesh, survey::posed_cameras(photographs.survey()), texture::source_of(photographs), {},
-      console_progress("Numbers of views"),
+      context.stage("Numbers of views"),
       {texture::Budget(left_for_views(mesh, settings), settings.survey.files.name_of),
        photographs.bytes_to_read_color()});
   return facts_of(mesh, seen, errors);
@@ -255,7 +256,8 @@ FaceFacts look_at_faces(const Mesh& mesh, const Settings& settings,
 // Gives the mesh textures. `facts`: of the faces of the textured mesh.
 TexturedMesh textured(TexturedMesh mesh, const Settings& settings,
                       const survey::Photographs& photographs,
-                      const std::optional<map::HeightErrors>& errors, FaceFacts& facts) {
+                      const std::optional<map::HeightErrors>& errors, FaceFacts& facts,
+                      const Context& context) {
   texture::Options options;
   options.max_bytes = left_for_views(mesh.mesh, settings);
   options.image_bytes = photographs.bytes_to_read_color();
@@ -265,14 +267,13 @@ TexturedMesh textured(TexturedMesh mesh, const Settings& settings,
   };
   TexturedMesh result =
       texture::texture_mesh(std::move(mesh.mesh), survey::posed_cameras(photographs.survey()),
-                            texture::source_of(photographs), options, nullptr,
-                            [](const std::string& stage) { return console_progress(stage); });
+                            texture::source_of(photographs), options, nullptr, context);
   return_freed_memory();
   return result;
 }
 
 void write(const Settings& settings, const TexturedMesh& mesh, const FaceFacts& facts,
-           const PlacedMap& place, const std::string& crs) {
+           const PlacedMap& place, const std::string& crs, const Context& context) {
   map::WriteOptions options;
   options.crs = crs;
   options.is_georeferenced = place.is_georeferenced;
@@ -281,9 +282,8 @@ void write(const Settings& settings, const TexturedMesh& mesh, const FaceFacts& 
   options.memory = settings.survey.memory;
   options.name_of = settings.survey.files.name_of;
   const map::MapFiles files = map_files(settings);
-  const map::MapReport report =
-      map::write_maps(files, {mesh, facts.views, facts.errors, place.frame, place.grid}, options,
-                      [](const std::string& stage) { return console_progress(stage); });
+  const map::MapReport report = map::write_maps(
+      files, {mesh, facts.views, facts.errors, place.frame, place.grid}, options, context);
   const auto share = [&](std::int64_t pixels) {
     return 100.0 * static_cast<double>(pixels) / static_cast<double>(place.grid.pixels());
   };
@@ -298,6 +298,7 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
   const Settings& settings = options.settings;
+  const Context context(console_events());
   const ThreadLimit limit(options.parsed.common.max_threads);
   const std::string crs =
       settings.epsg > 0 ? map::crs_of_epsg(settings.epsg, settings.survey.files.name_of) : "";
@@ -305,14 +306,15 @@ int run(int argc, char** argv) {
   survey::Survey survey = survey::open_scene(settings.survey);
   TexturedMesh mesh = read_mesh(settings, survey.frame);
   warn_of_local_coordinates(settings, survey.frame);
-  belong::check_surface(survey.scene, belong::shape_of(mesh.mesh), {settings.mesh, survey.file()});
+  belong::check_surface(survey.scene, belong::shape_of(mesh.mesh), {settings.mesh, survey.file()},
+                        context);
   survey::find_photographs(survey);
   survey.add_inputs(io::files_of_mesh(settings.mesh));
   survey.scene = {};
   return_freed_memory();
   const survey::Photographs photographs(survey);
   naming(settings.mesh, [&] {
-    const Eigen::Vector3d facing = keep_seen_part(settings, survey, mesh);
+    const Eigen::Vector3d facing = keep_seen_part(settings, survey, mesh, context);
     const PlacedMap place = place_map(settings, mesh.mesh, survey, facing);
     survey.keep_inputs(map_files(settings).all(), "--output-file");
     std::optional<map::HeightErrors> errors;
@@ -321,12 +323,12 @@ int run(int argc, char** argv) {
                      settings.image_noise);
     FaceFacts facts;
     if (mesh.textures.empty())
-      mesh = textured(std::move(mesh), settings, photographs, errors, facts);
+      mesh = textured(std::move(mesh), settings, photographs, errors, facts, context);
     else
-      facts = look_at_faces(mesh.mesh, settings, photographs, errors);
+      facts = look_at_faces(mesh.mesh, settings, photographs, errors, context);
     return_freed_memory();
     already_named([&] { photographs.report(); });
-    write(settings, mesh, facts, place, crs);
+    write(settings, mesh, facts, place, crs, context);
   });
   return 0;
 }

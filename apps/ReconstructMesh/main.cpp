@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include "base/console.h"
 #include "base/error.h"
-#include "base/log.h"
 #include "base/memory.h"
 #include "base/naming.h"
 #include "base/output_lock.h"
 #include "base/parallel.h"
-#include "base/progress.h"
 #include "belong/surface_check.h"
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/point_source.h"
@@ -37,28 +36,31 @@ survey::Survey open(const Options& options) {
   return survey;
 }
 
-Mesh reconstruct(const io::SceneWithCameras& scene, const Options& options) {
+Mesh reconstruct(const io::SceneWithCameras& scene, const Options& options,
+                 const Context& context) {
   const fs::path file = cloud_file(options);
   if (!file.empty())
     options.survey.memory.require(io::bytes_to_read_cloud(file), "reading " + file.string());
   PointCloud cloud =
       file.empty() ? cloud_of(scene.scene) : io::read_cloud_of_scene(scene.frame, file);
   const fs::path& source = file.empty() ? options.survey.files.scene : file;
-  log_info("Cloud {}: {} points", source.filename().string(), cloud.size());
+  context.info("Cloud {}: {} points", source.filename().string(), cloud.size());
   if (!file.empty())
-    belong::check_surface(scene.scene, belong::shape_of(cloud), {file, options.survey.files.scene});
+    belong::check_surface(scene.scene, belong::shape_of(cloud), {file, options.survey.files.scene},
+                          context);
   return naming(source, [&] {
-    return mesh::reconstruct(std::move(cloud), scene.scene, options.reconstruct);
+    return mesh::reconstruct(std::move(cloud), scene.scene, options.reconstruct, context);
   });
 }
 
 // Sets `keep` if the mesh has marks of unseen faces.
-Mesh clean_given(const io::SceneWithCameras& scene, const Options& options, bool& keep) {
+Mesh clean_given(const io::SceneWithCameras& scene, const Options& options, bool& keep,
+                 const Context& context) {
   options.survey.memory.require(io::bytes_to_read_mesh(options.mesh),
                                 "reading " + options.mesh.string());
   const Mesh mesh = io::read_mesh_of_scene(scene.frame, options.mesh);
   belong::check_surface(scene.scene, belong::shape_of(mesh),
-                        {options.mesh, options.survey.files.scene});
+                        {options.mesh, options.survey.files.scene}, context);
   keep = keep || !mesh.unseen.empty();
   options.survey.memory.require(mesh::bytes_to_clean(mesh.vertices.size()),
                                 "cleaning " + options.mesh.string());
@@ -66,8 +68,8 @@ Mesh clean_given(const io::SceneWithCameras& scene, const Options& options, bool
 }
 
 // Removes or marks the surface that no two cameras see.
-Mesh without_unseen(Mesh mesh, const io::SceneWithCameras& scene, const Options& options,
-                    bool keep) {
+Mesh without_unseen(Mesh mesh, const io::SceneWithCameras& scene, const Options& options, bool keep,
+                    const Context& context) {
   options.survey.memory.require(mesh::bytes_of_unseen(mesh),
                                 "finding the surface that no two cameras see");
   const fs::path& source = options.mesh.empty() ? options.survey.files.scene : options.mesh;
@@ -84,36 +86,38 @@ Mesh without_unseen(Mesh mesh, const io::SceneWithCameras& scene, const Options&
   unseen.points = points;
   return naming(source, [&] {
     return mesh::treat_unseen(std::move(mesh), geometry::posed_cameras(scene.scene), unseen,
-                              console_progress("Looked"));
+                              context);
   });
 }
 
-void write(const fs::path& file, const Mesh& mesh, const LocalFrame& frame) {
+void write(const fs::path& file, const Mesh& mesh, const LocalFrame& frame,
+           const Context& context) {
   if (!mesh.unseen.empty() && file.extension() != ".ply")
-    log_warning("{}: only PLY has marks of unseen faces: use --export-type ply", file.string());
+    context.warning("{}: only PLY has marks of unseen faces: use --export-type ply", file.string());
   io::write_mesh(file, mesh, frame);
-  log_info("{}: {} vertices, {} faces", file.string(), mesh.vertices.size(), mesh.faces.size());
+  context.info("{}: {} vertices, {} faces", file.string(), mesh.vertices.size(), mesh.faces.size());
 }
 
 int run(int argc, char** argv) {
   Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
+  const Context context(console_events());
   const ThreadLimit threads(options.parsed.common.max_threads);
   const OutputLock lock = lock_output(options.output, lock_use(options));
   const survey::Survey scene = open(options);
   options.reconstruct.max_bytes = memory_limit(options.survey.memory.megabytes, "--max-memory");
   if (options.tile > 0) {
-    make_tile(scene, options);
+    make_tile(scene, options, context);
     return 0;
   }
   bool keep = options.close_unseen;
-  Mesh mesh = options.tiles > 1      ? join_tiles(scene, options)
-              : options.mesh.empty() ? reconstruct(scene, options)
-                                     : clean_given(scene, options, keep);
+  Mesh mesh = options.tiles > 1      ? join_tiles(scene, options, context)
+              : options.mesh.empty() ? reconstruct(scene, options, context)
+                                     : clean_given(scene, options, keep, context);
   return_freed_memory();
-  mesh = without_unseen(std::move(mesh), scene, options, keep);
-  write(options.output, mesh, scene.frame);
+  mesh = without_unseen(std::move(mesh), scene, options, keep, context);
+  write(options.output, mesh, scene.frame, context);
   remove_tiles(options);
   return 0;
 }

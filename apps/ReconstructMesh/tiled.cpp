@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "base/log.h"
 #include "base/naming.h"
 #include "base/output_name.h"
 #include "base/parse_number.h"
@@ -100,19 +99,19 @@ mesh::CloudSource source_of(const io::SceneWithCameras& scene, const Options& op
   };
 }
 
-void make_tile(const io::SceneWithCameras& scene, const Options& options) {
+void make_tile(const io::SceneWithCameras& scene, const Options& options, const Context& context) {
   naming(named_source(options), [&] {
     mesh::reconstruct_tile(options.tile - 1, source_of(scene, options), scene.scene,
-                           options.reconstruct, run_of(options));
+                           options.reconstruct, run_of(options), context);
   });
-  log_info("{}: tile {} of {} is complete", tile_folder(options).string(), options.tile,
-           options.tiles);
+  context.info("{}: tile {} of {} is complete", tile_folder(options).string(), options.tile,
+               options.tiles);
 }
 
-Mesh join_tiles(const io::SceneWithCameras& scene, const Options& options) {
+Mesh join_tiles(const io::SceneWithCameras& scene, const Options& options, const Context& context) {
   return naming(named_source(options), [&] {
     return mesh::reconstruct_in_tiles(source_of(scene, options), scene.scene, options.reconstruct,
-                                      run_of(options));
+                                      run_of(options), context);
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "base/context.h"
 #include "io/openmvs/scene_with_cameras.h"
 #include "mesh/cloud_source.h"
 #include "options.h"
@@ -19,10 +20,10 @@ std::filesystem::path cloud_file(const Options& options);
 mesh::CloudSource source_of(const io::SceneWithCameras& scene, const Options& options);
 
 // Makes tile Options::tile, and writes its files into the folder <output>.tilesN.
-void make_tile(const io::SceneWithCameras& scene, const Options& options);
+void make_tile(const io::SceneWithCameras& scene, const Options& options, const Context& context);
 
 // Makes the tiles whose files are missing, and returns the mesh of all tiles.
-Mesh join_tiles(const io::SceneWithCameras& scene, const Options& options);
+Mesh join_tiles(const io::SceneWithCameras& scene, const Options& options, const Context& context);
 
 // Removes the intermediate files of tiles beside the output, those of other numbers of tiles, too.
 // Other files in their folders stay.

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
+#include "base/console.h"
 #include "base/error.h"
-#include "base/log.h"
 #include "base/memory.h"
 #include "base/naming.h"
 #include "base/output_lock.h"
 #include "base/parallel.h"
-#include "base/progress.h"
 #include "belong/surface_check.h"
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/point_source.h"
@@ -41,14 +40,15 @@ survey::Survey open(const Options& options) {
 }
 
 // Sets `has_marks` if faces of the mesh are marked as unseen. The result has no marks.
-Mesh read_mesh(const Options& options, const LocalFrame& frame, bool& has_marks) {
+Mesh read_mesh(const Options& options, const LocalFrame& frame, bool& has_marks,
+               const Context& context) {
   options.survey.memory.require(io::bytes_to_read_mesh(options.mesh),
                                 "reading " + options.mesh.string());
   Mesh mesh = io::read_mesh_of_scene(frame, options.mesh);
   naming(options.mesh, [&] { check_mesh(mesh); });
   if (mesh.faces.empty()) fail("{}: the mesh has no faces", options.mesh.string());
-  log_info("Mesh {}: {} vertices, {} faces", options.mesh.filename().string(), mesh.vertices.size(),
-           mesh.faces.size());
+  context.info("Mesh {}: {} vertices, {} faces", options.mesh.filename().string(),
+               mesh.vertices.size(), mesh.faces.size());
   has_marks = !mesh.unseen.empty();
   mesh.unseen = {};
   if (options.decimate == 1) return mesh;
@@ -84,11 +84,12 @@ Shares share_out_memory(const Options& options, const survey::Survey& survey) {
 
 // The state after the last resolution that an earlier run with the same input finished, or a state
 // that begins with `mesh`.
-refine::State first_state(Mesh mesh, const Options& options, const std::string& fingerprint) {
+refine::State first_state(Mesh mesh, const Options& options, const std::string& fingerprint,
+                          const Context& context) {
   const fs::path file = state_file(options);
   if (auto state = refine::read_state(file, fingerprint)) {
-    log_info("{}: {} of {} resolutions are done already", file.string(), state->done,
-             options.refine.scales);
+    context.info("{}: {} of {} resolutions are done already", file.string(), state->done,
+                 options.refine.scales);
     return std::move(*state);
   }
   refine::State state;
@@ -97,10 +98,10 @@ refine::State first_state(Mesh mesh, const Options& options, const std::string& 
 }
 
 Mesh refine_mesh(Mesh mesh, const survey::Survey& survey, const Options& options,
-                 refine::StateOfRun& of_run) {
+                 refine::StateOfRun& of_run, const Context& context) {
   const std::string fingerprint =
       refine::fingerprint(mesh, options.refine, survey::fingerprint_of_views(survey));
-  refine::State state = first_state(std::move(mesh), options, fingerprint);
+  refine::State state = first_state(std::move(mesh), options, fingerprint, context);
   return_freed_memory();
   const Shares shares = share_out_memory(options, survey);
   survey::ImageStore images(survey, survey::Channels::grey, shares.images);
@@ -115,13 +116,12 @@ Mesh refine_mesh(Mesh mesh, const survey::Survey& survey, const Options& options
           const auto image = images.get(view);
           return refine::Picture{image->grey, image->mask};
         },
-        settings, console_progress("Refined"),
-        [&](const refine::State& now) { of_run.write(now, fingerprint); });
+        settings, [&](const refine::State& now) { of_run.write(now, fingerprint); }, context);
   });
   survey.photograph_check->report();
   const refine::Report& report = state.report;
-  log_info("{} vertices measured in {} pairs of images; median displacement {:.3g} m",
-           report.measured, report.pairs, report.moved);
+  context.info("{} vertices measured in {} pairs of images; median displacement {:.3g} m",
+               report.measured, report.pairs, report.moved);
   return std::move(state.mesh);
 }
 
@@ -139,41 +139,43 @@ std::vector<Eigen::Vector3f> points_of(const survey::Survey& survey, std::size_t
 }
 
 // Removes or marks the surface that no two cameras see.
-Mesh without_unseen(Mesh mesh, const survey::Survey& survey, bool keep) {
+Mesh without_unseen(Mesh mesh, const survey::Survey& survey, bool keep, const Context& context) {
   mesh::UnseenOptions unseen;
   unseen.keep = keep;
   const std::vector<Eigen::Vector3f> points = points_of(survey, mesh.faces.size());
   unseen.points = points;
-  return mesh::treat_unseen(std::move(mesh), survey::posed_cameras(survey), unseen,
-                            console_progress("Looked"));
+  return mesh::treat_unseen(std::move(mesh), survey::posed_cameras(survey), unseen, context);
 }
 
-void write(const fs::path& file, const Mesh& mesh, const LocalFrame& frame) {
+void write(const fs::path& file, const Mesh& mesh, const LocalFrame& frame,
+           const Context& context) {
   if (!mesh.unseen.empty() && file.extension() != ".ply")
-    log_warning("{}: only PLY has marks of unseen faces: use --export-type ply", file.string());
+    context.warning("{}: only PLY has marks of unseen faces: use --export-type ply", file.string());
   io::write_mesh(file, mesh, frame);
-  log_info("{}: {} vertices, {} faces", file.string(), mesh.vertices.size(), mesh.faces.size());
+  context.info("{}: {} vertices, {} faces", file.string(), mesh.vertices.size(), mesh.faces.size());
 }
 
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
+  const Context context(console_events());
   const ThreadLimit threads(options.parsed.common.max_threads);
   const OutputLock lock = lock_output(options.output);
   const survey::Survey survey = open(options);
   bool has_marks = false;
-  Mesh mesh = read_mesh(options, survey.frame, has_marks);
-  belong::check_surface(survey.scene, belong::shape_of(mesh), {options.mesh, survey.file()});
+  Mesh mesh = read_mesh(options, survey.frame, has_marks, context);
+  belong::check_surface(survey.scene, belong::shape_of(mesh), {options.mesh, survey.file()},
+                        context);
   points_of(survey, 1);  // a malformed cloud is an Error now, not after hours
-  refine::StateOfRun state(state_file(options));
-  mesh = refine_mesh(std::move(mesh), survey, options, state);
+  refine::StateOfRun state(state_file(options), context);
+  mesh = refine_mesh(std::move(mesh), survey, options, state, context);
   return_freed_memory();
   mesh = naming(options.mesh, [&] {
     return without_unseen(mesh::clean(mesh, options.cleaning), survey,
-                          options.close_unseen || has_marks);
+                          options.close_unseen || has_marks, context);
   });
-  state.writing([&] { write(options.output, mesh, survey.frame); });
+  state.writing([&] { write(options.output, mesh, survey.frame, context); });
   state.remove();
   return 0;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/console.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -10,7 +11,6 @@
 #include "base/other_tiles.h"
 #include "base/output_lock.h"
 #include "base/parallel.h"
-#include "base/progress.h"
 #include "belong/surface_check.h"
 #include "geometry/seen_part.h"
 #include "io/openmvs/point_source.h"
@@ -111,7 +111,7 @@ texture::Options with_memory(const Settings& settings, const survey::Photographs
 }
 
 void texture_and_write(const Settings& settings, const survey::Survey& survey, Mesh mesh,
-                       const Eigen::Matrix3d& axes) {
+                       const Eigen::Matrix3d& axes, const Context& context) {
   const survey::Photographs photographs(survey);
   texture::Options options = with_memory(settings, photographs);
   options.axes = axes;
@@ -129,17 +129,18 @@ void texture_and_write(const Settings& settings, const survey::Survey& survey, M
           if (tile + 1 == options.tiles) report(written, facts);
           write(settings, survey.frame, tile, textured);
         },
-        &facts, [](const std::string& stage) { return console_progress(stage); });
+        &facts, context);
   });
 }
 
 // Warns if the mesh is inside out: no photograph shows faces that are turned away from it.
-void check_sides(const Settings& settings, const survey::Survey& survey, const Mesh& mesh) {
+void check_sides(const Settings& settings, const survey::Survey& survey, const Mesh& mesh,
+                 const Context& context) {
   settings.survey.memory.require(geometry::bytes_of_sights(mesh), "what the cameras see");
   naming(settings.mesh, [&] {
     geometry::warn_if_inside_out(
         geometry::find_seen_part(mesh, survey::posed_cameras(survey), {.strays = false}),
-        settings.mesh);
+        settings.mesh, context);
   });
   return_freed_memory();
 }
@@ -149,12 +150,14 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
   const Settings& settings = options.settings;
+  const Context context(console_events());
   const ThreadLimit limit(options.parsed.common.max_threads);
   const OutputLock lock = lock_output(settings.output);
   survey::Survey survey = survey::open_scene(settings.survey);
   Mesh mesh = read_mesh(settings, survey.frame);
   naming(settings.mesh, [&] { check_mesh(mesh); });
-  belong::check_surface(survey.scene, belong::shape_of(mesh), {settings.mesh, survey.file()});
+  belong::check_surface(survey.scene, belong::shape_of(mesh), {settings.mesh, survey.file()},
+                        context);
   mesh = simplified(settings, std::move(mesh));
   survey::find_photographs(survey);
   survey.add_inputs(io::files_of_mesh(settings.mesh));
@@ -164,8 +167,8 @@ int run(int argc, char** argv) {
   const Eigen::Matrix3d axes = region ? region->rotation : Eigen::Matrix3d::Identity();
   survey.scene = {};
   return_freed_memory();
-  check_sides(settings, survey, mesh);
-  texture_and_write(settings, survey, std::move(mesh), axes);
+  check_sides(settings, survey, mesh, context);
+  texture_and_write(settings, survey, std::move(mesh), axes, context);
   warn_of_other_tiles(other_tiles(settings.output, settings.texture.tiles));
   return 0;
 }

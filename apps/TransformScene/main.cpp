@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "base/console.h"
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "base/log.h"
@@ -143,7 +144,7 @@ void keep_images(const Options& options, const Files& files, const survey::Surve
 // Warns of a mesh or a cloud that does not belong to the scene, which is still unmoved. The
 // vertices of a mesh are looked at as points. transform_ply() reports the faults of files.
 void warn_of_foreign_points(const Options& options, const io::SceneWithCameras& scene,
-                            const fs::path& ply) {
+                            const fs::path& ply, const Context& context) {
   constexpr std::size_t kPortion = 1 << 18, kMost = 1'000'000;
   std::vector<Eigen::Vector3f> points;
   std::size_t read = 0;
@@ -157,7 +158,7 @@ void warn_of_foreign_points(const Options& options, const io::SceneWithCameras& 
   } catch (const Error&) {
     return;
   }
-  belong::check_surface(scene.scene, {points}, {ply, options.survey.files.scene, true});
+  belong::check_surface(scene.scene, {points}, {ply, options.survey.files.scene, true}, context);
 }
 
 void apply(const Options& options, const FrameMove& move, io::SceneWithCameras& scene) {
@@ -274,6 +275,7 @@ void warn_of_older_files(const Options& options, const Files& files) {
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
+  const Context context(console_events());
   const ThreadLimit threads(options.parsed.common.max_threads);
   const Files files = files_of(options);
   std::optional<OutputLock> lock;
@@ -282,7 +284,8 @@ int run(int argc, char** argv) {
   check_outputs(options, files);
   survey::Survey survey = survey::open_scene(options.survey);
   keep_images(options, files, survey);
-  for (const MovedPly& ply : files.plys) warn_of_foreign_points(options, survey, ply.input);
+  for (const MovedPly& ply : files.plys)
+    warn_of_foreign_points(options, survey, ply.input, context);
   const FrameMove move = find_move(options, survey);
   check_scale(options, survey, move.similarity);
   apply(options, move, survey);

@@ -53,7 +53,7 @@ cv::Size reduced(cv::Size size, int longest) {
   return working_size(size.width, size.height, {0, 1, longest});
 }
 
-void read_cloud(const Options& options, Contents& contents) {
+void read_cloud(const Options& options, Contents& contents, const Context& context) {
   view::CloudSample sample(options.max_points);
   constexpr std::size_t kPortion = 1 << 18;
   io::read_cloud_of_scene_in_portions(
@@ -65,7 +65,7 @@ void read_cloud(const Options& options, Contents& contents) {
   log_info("{}: {} of {} points are shown", options.cloud.string(), contents.cloud.size(),
            contents.all_points);
   belong::check_surface(contents.survey.scene, belong::shape_of(contents.cloud),
-                        {options.cloud, options.survey.files.scene});
+                        {options.cloud, options.survey.files.scene}, context);
 }
 
 const Mesh& mesh_of(const Contents& contents) {
@@ -85,7 +85,7 @@ PointCloud corners_of_mesh(const Contents& contents) {
   return corners;
 }
 
-void read_mesh(const Options& options, Contents& contents) {
+void read_mesh(const Options& options, Contents& contents, const Context& context) {
   if (options.mesh.empty()) return;
   const LocalFrame& frame = contents.survey.frame;
   std::size_t faces = 0;
@@ -101,17 +101,17 @@ void read_mesh(const Options& options, Contents& contents) {
   const Mesh& mesh = mesh_of(contents);
   naming(options.mesh, [&] { check_mesh(mesh); });
   belong::check_surface(contents.survey.scene, belong::shape_of(mesh),
-                        {options.mesh, options.survey.files.scene});
+                        {options.mesh, options.survey.files.scene}, context);
 }
 
 // Warns if the mesh is inside out.
-void check_sides(const Options& options, const Contents& contents) {
+void check_sides(const Options& options, const Contents& contents, const Context& context) {
   if (!contents.mesh && !contents.textured) return;
   const auto cameras = geometry::posed_cameras(contents.survey.scene);
   const Mesh& mesh = mesh_of(contents);
   naming(options.mesh, [&] {
     geometry::warn_if_inside_out(geometry::find_seen_part(mesh, cameras, {.strays = false}),
-                                 options.mesh);
+                                 options.mesh, context);
   });
 }
 
@@ -226,13 +226,13 @@ Json files_of(const Options& options) {
 
 }  // namespace
 
-Contents read_contents(const Options& options) {
+Contents read_contents(const Options& options, const Context& context) {
   Contents contents;
   contents.survey = survey::open_scene(options.survey);
   survey::find_photographs(contents.survey);
-  if (!options.cloud.empty()) read_cloud(options, contents);
-  read_mesh(options, contents);
-  check_sides(options, contents);
+  if (!options.cloud.empty()) read_cloud(options, contents, context);
+  read_mesh(options, contents, context);
+  check_sides(options, contents, context);
   if (!options.truth.empty())
     contents.distances = distances_to_truth(contents.survey.frame, contents.cloud, options.truth);
   return contents;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/context.h"
 #include "options.h"
 #include "scene/mesh.h"
 #include "scene/point_cloud.h"
@@ -27,7 +28,7 @@ struct Contents {
 
 // Reads the files that `options` name. Error for a malformed file, a cloud without points, a mesh
 // without faces, and a scene without calibrated images.
-Contents read_contents(const Options& options);
+Contents read_contents(const Options& options, const Context& context);
 
 // Writes the data files and the reduced photographs to `staging`. Error for a photograph that
 // cannot be read or has another shape than its camera, for views of the cloud that the scene does

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/atomic_file.h"
+#include "base/console.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/output_lock.h"
@@ -26,7 +27,7 @@ int run(int argc, char** argv) {
   const fs::path page = page_folder();
   const OutputLock lock = lock_output(options.report);
   require_own_folder(options.report);
-  const Contents contents = read_contents(options);
+  const Contents contents = read_contents(options, Context(console_events()));
   write_own_folder(options.report, [&](const fs::path& staging) {
     for (const char* file : {"index.html", "style.css", "viewer.js"})
       fs::copy_file(page / file, staging / file);

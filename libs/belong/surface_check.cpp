@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "belong/surface_fit.h"
 #include "geometry/surface.h"
 
@@ -145,9 +144,10 @@ std::string known_misfit(SurfaceMeasure& measure, const Shape& shape, double lar
   return {};
 }
 
-void report_misfit(const SurfaceCheck& check, bool is_certain, const std::string& text) {
+void report_misfit(const SurfaceCheck& check, bool is_certain, const std::string& text,
+                   const Context& context) {
   if (is_certain && !check.only_warn) fail("{}: {}", check.shape.string(), text);
-  log_warning("{}: {}", check.shape.string(), text);
+  context.warning("{}: {}", check.shape.string(), text);
 }
 
 std::string distance_text(const Shape& shape, const SurfaceFit& fit) {
@@ -157,14 +157,15 @@ std::string distance_text(const Shape& shape, const SurfaceFit& fit) {
 
 // Reports a shape that does not fit. `known`: of known_misfit().
 void report_distance(const SurfaceCheck& check, const Shape& shape, const SurfaceFit& fit,
-                     double largest, const std::string& known) {
+                     double largest, const std::string& known, const Context& context) {
   const std::string cause =
       !known.empty() ? known
                      : fmt::format("is it the {} of another survey, or did the poses change since?",
                                    word_for(shape));
   report_misfit(check, !known.empty() || fit.distance >= 2 * largest,
                 fmt::format("does not belong to {}: {}; {}", check.scene.string(),
-                            distance_text(shape, fit), cause));
+                            distance_text(shape, fit), cause),
+                context);
 }
 
 }  // namespace
@@ -176,7 +177,8 @@ double largest_distance(const Scene& scene, const Shape& shape, double spacing) 
   return std::max({3.0, side / 300.0, (shape.faces.empty() ? 1 : 0.5) * spacing});
 }
 
-void check_surface(const Scene& scene, const Shape& shape, const SurfaceCheck& check) {
+void check_surface(const Scene& scene, const Shape& shape, const SurfaceCheck& check,
+                   const Context& context) {
   if (shape.parts() == 0 || calibrated_images(scene).empty()) return;
   if (shape.faces.empty() && shape.parts() < kFewestPoints) return;
   SurfaceMeasure measure(scene);
@@ -185,15 +187,18 @@ void check_surface(const Scene& scene, const Shape& shape, const SurfaceCheck& c
   if (fit.counted >= kEnoughPlaces && fit.distance <= largest) return;
   const std::string known =
       fit.places >= kEnoughPlaces ? known_misfit(measure, shape, largest) : std::string();
-  if (fit.counted >= kEnoughPlaces) return report_distance(check, shape, fit, largest, known);
+  if (fit.counted >= kEnoughPlaces)
+    return report_distance(check, shape, fit, largest, known, context);
   if (!known.empty())
     return report_misfit(check, true,
-                         fmt::format("does not belong to {}: {}", check.scene.string(), known));
+                         fmt::format("does not belong to {}: {}", check.scene.string(), known),
+                         context);
   if (!is_in_view(scene, shape))
     report_misfit(check, true,
                   fmt::format("no camera of {} looks at the {}: is it the {} of another survey, or "
                               "did it lose its offset?",
-                              check.scene.string(), word_for(shape), word_for(shape)));
+                              check.scene.string(), word_for(shape), word_for(shape)),
+                  context);
 }
 
 }  // namespace axial::belong

@@ -11,6 +11,7 @@
 
 #include <filesystem>
 
+#include "base/context.h"
 #include "belong/shape.h"
 #include "scene/scene.h"
 
@@ -36,6 +37,7 @@ double largest_distance(const Scene& scene, const Shape& shape, double spacing);
 // The messages name both files and these causes. The last two checks need 50 sparse points. A part
 // of a shape belongs to a scene as well as the whole shape. A scene without calibrated images, a
 // mesh without faces and a cloud of fewer than 100 points pass.
-void check_surface(const Scene& scene, const Shape& shape, const SurfaceCheck& check);
+void check_surface(const Scene& scene, const Shape& shape, const SurfaceCheck& check,
+                   const Context& context);
 
 }  // namespace axial::belong

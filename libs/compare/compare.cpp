@@ -125,7 +125,7 @@ void fill_heights(const Mesh& before, const Mesh& after, const map::MapFrame& af
                   const ProgressSink& progress, Comparison& result) {
   const auto half = [&](std::size_t first) {
     return [&progress, first](std::size_t done, std::size_t blocks) {
-      if (progress) progress(first * blocks + done, 2 * blocks);
+      progress(first * blocks + done, 2 * blocks);
     };
   };
   result.before = height_map(before, result.frame, result.grid, result.base, 1, half(0));
@@ -231,14 +231,11 @@ int least_pixels(int least, double vertex_distance, double pixel) {
   return static_cast<int>(std::min(std::round(least * finer * finer), 1e9));
 }
 
-ProgressSink sink_of(const CompareOptions& options, const char* stage) {
-  return options.progress ? options.progress(stage) : ProgressSink{};
-}
-
 // A comparison with the frame, the grid and the registration. `after_frame` becomes the frame of
 // the later survey on the map.
 Comparison placed(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
-                  const CompareOptions& options, map::MapFrame& after_frame) {
+                  const CompareOptions& options, map::MapFrame& after_frame,
+                  const Context& context) {
   const double distance_before = checked_distance(before, options.name_before),
                distance_after = checked_distance(after, options.name_after);
   const double pixel = options.pixel > 0
@@ -266,7 +263,7 @@ Comparison placed(const Mesh& before, const Mesh& after, const map::MapFrame& fr
     options.memory.require(geometry::bytes_of_surface(before), "the registration");
     result.registration = naming(options.name_after, [&] {
       return register_surveys(before, after, frame, result.grid, options.registration,
-                              sink_of(options, "Registration"));
+                              context.stage("Registration"));
     });
     after_frame = moved(frame, result.registration.motion);
     result.grid = common(after_frame);
@@ -293,12 +290,12 @@ Eigen::Vector3d upward_direction(const Mesh& mesh, const Eigen::Vector3d& facing
 }
 
 Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
-                           const CompareOptions& options) {
+                           const CompareOptions& options, const Context& context) {
   map::MapFrame after_frame;
-  Comparison result = placed(before, after, frame, options, after_frame);
-  fill_heights(before, after, after_frame, sink_of(options, "Heights"), result);
+  Comparison result = placed(before, after, frame, options, after_frame, context);
+  fill_heights(before, after, after_frame, context.stage("Heights"), result);
   const cv::Mat1b unseen =
-      find_unseen(before, after, after_frame, options.photos, sink_of(options, "Sights"), result);
+      find_unseen(before, after, after_frame, options.photos, context.stage("Sights"), result);
   result.place = place_of(result.before, result.difference, unseen);
   Maps maps = subtract(result);
   if (std::ranges::all_of(result.difference, [](float value) { return std::isnan(value); }))

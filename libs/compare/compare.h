@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/context.h"
 #include "base/memory.h"
 #include "base/setting_names.h"
 #include "compare/changes.h"
@@ -46,10 +47,6 @@ struct CompareOptions {
   SettingNames name_of = own_name;
   // The names of the surveys in errors.
   std::filesystem::path name_before = "the earlier survey", name_after = "the later survey";
-  // Returns the ProgressSink for a stage with the given name. The stages "Registration"
-  // (steps), "Heights" (blocks of the map, of both surveys) and "Sights" (rows of the map, of a
-  // survey with photographs) report their progress.
-  map::StageProgress progress = {};
 };
 
 // The maps have one value for each pixel of `grid`. NaN: not compared, because one of the surveys
@@ -104,8 +101,10 @@ Eigen::Vector3d upward_direction(const Mesh& mesh, const Eigen::Vector3d& facing
 // their reliefs show different places, unless CompareOptions::allow_other_place is set; the places
 // that photographs do not see do not count. Error if the map has too many
 // pixels (grid_around()), if the photographs see no place of both surveys, and if the memory does
-// not suffice. The result does not depend on the number of threads.
+// not suffice. The result does not depend on the number of threads. The stages "Registration"
+// (steps), "Heights" (blocks of the map, of both surveys) and "Sights" (rows of the map, of a
+// survey with photographs) report their progress.
 Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
-                           const CompareOptions& options);
+                           const CompareOptions& options, const Context& context = {});
 
 }  // namespace axial::compare

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "base/log.h"
 #include "geometry/faces.h"
 #include "geometry/surface.h"
 
@@ -74,17 +73,19 @@ SeenPart find_seen_part(const Mesh& mesh, std::span<const PosedCamera> cameras,
   return part;
 }
 
-void warn_of_strays(const SeenPart& part, const std::filesystem::path& mesh, std::size_t faces) {
+void warn_of_strays(const SeenPart& part, const std::filesystem::path& mesh, std::size_t faces,
+                    const Context& context) {
   if (part.strays.empty()) return;
-  log_warning(
+  context.warning(
       "{}: {} of {} faces are left out: no camera sees them, and they are far from everything that "
       "the cameras see",
       mesh.string(), part.strays.size(), faces);
 }
 
-void warn_if_inside_out(const SeenPart& part, const std::filesystem::path& mesh) {
+void warn_if_inside_out(const SeenPart& part, const std::filesystem::path& mesh,
+                        const Context& context) {
   if (!part.is_inside_out()) return;
-  log_warning(
+  context.warning(
       "{}: the mesh is inside out: the cameras see {:.0f} % of its faces from behind; flip the "
       "faces in an editor (MeshLab: Invert Faces Orientation; Blender: Flip Normals)",
       mesh.string(),

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "base/context.h"
 #include "geometry/face_sights.h"
 #include "scene/mesh.h"
 
@@ -44,11 +45,13 @@ SeenPart find_seen_part(const Mesh& mesh, std::span<const PosedCamera> cameras,
                         const SeenPartOptions& options = {});
 
 // Logs a warning if the mesh of the file `mesh` is inside out. It tells how to mend the mesh.
-void warn_if_inside_out(const SeenPart& part, const std::filesystem::path& mesh);
+void warn_if_inside_out(const SeenPart& part, const std::filesystem::path& mesh,
+                        const Context& context);
 
 // Logs a warning if the mesh of the file `mesh`, which has `faces` faces, has strays: that they are
 // left out.
-void warn_of_strays(const SeenPart& part, const std::filesystem::path& mesh, std::size_t faces);
+void warn_of_strays(const SeenPart& part, const std::filesystem::path& mesh, std::size_t faces,
+                    const Context& context);
 
 // Removes the elements with the given indices, which are in ascending order.
 template <class T>

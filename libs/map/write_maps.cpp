@@ -105,8 +105,7 @@ void write_picture(const fs::path& path, const fs::path& colors, const WriteOpti
 }
 
 MapReport make_maps(const MapFiles& files, const MapContent& content, const WriteOptions& options,
-                    const StageProgress& progress) {
-  const auto sink = [&](const char* stage) { return progress ? progress(stage) : ProgressSink{}; };
+                    const Context& context) {
   if (options.samples == 0)
     options.memory.require(bytes_of_samples(content), "the width of a pixel in texels");
   const int samples = options.samples > 0 ? options.samples : samples_per_pixel(content);
@@ -114,13 +113,13 @@ MapReport make_maps(const MapFiles& files, const MapContent& content, const Writ
   OpenMaps maps(files, content, options);
   {
     const FaceBins bins(content.mesh.mesh, content.frame, content.grid, options.block_size);
-    ProgressCounter counter(sink("Maps"), bins.blocks());
+    ProgressCounter counter(context.stage("Maps"), bins.blocks());
     for_each_in_flight(bins.blocks(), at_once, [&](std::size_t b) {
       maps.write(make_block(content, bins, b, samples));
       counter.add();
     });
   }
-  const MapReport report = maps.finish(sink("Files"));
+  const MapReport report = maps.finish(context.stage("Files"));
   if (!files.contours.empty())
     write_contours(files.heights, options.contour_interval, files.contours);
   if (!files.picture.empty()) write_picture(files.picture, files.colors, options);
@@ -153,7 +152,7 @@ std::vector<fs::path> MapFiles::all() const {
 }
 
 MapReport write_maps(const MapFiles& files, const MapContent& content, const WriteOptions& options,
-                     const StageProgress& progress) {
+                     const Context& context) {
   check_content(content);
   if (!files.colors.empty() && content.mesh.textures.empty()) fail("the mesh has no textures");
   if (!files.counts.empty() && content.views.empty()) fail("the numbers of views are missing");
@@ -171,7 +170,7 @@ MapReport write_maps(const MapFiles& files, const MapContent& content, const Wri
     auto next = temporaries.begin();
     for (const auto member : kMembers)
       if (!(renamed.*member).empty()) renamed.*member = *next++;
-    report = make_maps(renamed, content, options, progress);
+    report = make_maps(renamed, content, options, context);
     if (report.surface == 0)
       fail("the map shows no surface: the mesh is upright, or smaller than a pixel");
   });

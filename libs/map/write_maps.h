@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "base/context.h"
 #include "base/memory.h"
-#include "base/progress.h"
 #include "base/setting_names.h"
 #include "map/map_block.h"
 #include "scene/local_frame.h"
@@ -44,9 +44,6 @@ struct WriteOptions {
   SettingNames name_of = own_name;
 };
 
-// Returns the ProgressSink for a stage with the given name.
-using StageProgress = std::function<ProgressSink(const std::string& stage)>;
-
 struct MapReport {
   std::int64_t surface = 0;  // pixels with a height
   std::int64_t colored = 0;  // pixels with a colour
@@ -55,12 +52,11 @@ struct MapReport {
 // Makes the maps of `content` block by block, several at the same time, and writes them. All files
 // are written under temporary names and then renamed one after the other. If anything fails before
 // that, existing files keep their content. The result has the same bytes for any number of threads,
-// any size of blocks and any memory. `progress`, if given, returns the ProgressSink for a stage
-// with the given name: the stages count blocks and files.
+// any size of blocks and any memory. The stages "Maps" and "Files" count blocks and files.
 //
 // Errors of check_content() are passed on. Error that names the file if it cannot be written, and
 // if the memory does not suffice for samples_per_pixel(), and for the lists of faces and one block.
 MapReport write_maps(const MapFiles& files, const MapContent& content, const WriteOptions& options,
-                     const StageProgress& progress = {});
+                     const Context& context = {});
 
 }  // namespace axial::map

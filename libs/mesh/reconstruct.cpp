@@ -4,9 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "base/memory.h"
-#include "base/progress.h"
 #include "cloud/crop.h"
 #include "mesh/cut.h"
 #include "mesh/surface.h"
@@ -23,13 +21,13 @@ std::size_t most_points(std::uint64_t max_bytes) {
 }
 
 MergedPoints merged(PointCloud cloud, const Scene& scene, const ViewRays& rays,
-                    const ReconstructOptions& options) {
+                    const ReconstructOptions& options, const Context& context) {
   const std::size_t all = cloud.size();
   if (options.only_region && scene.region) cloud::crop(cloud, *scene.region);
   MergeOptions settings = options.merge;
   if (options.max_bytes > 0) settings.most_points = most_points(options.max_bytes);
   MergedPoints points = merge_points(cloud, rays, settings);
-  log_info("{} points merged to {}", all, points.count);
+  context.info("{} points merged to {}", all, points.count);
   if (points.count < 4) fail("{} points remain of {}: at least 4 are needed", points.count, all);
   return points;
 }
@@ -45,17 +43,17 @@ void check_memory(std::size_t points, const ReconstructOptions& options) {
 }
 
 Surface cut_surface(const MergedPoints& points, const ViewRays& rays,
-                    const ReconstructOptions& options) {
+                    const ReconstructOptions& options, const Context& context) {
   const Tetrahedra tetrahedra = delaunay(points.positions);
   return_freed_memory();
-  log_info("{} tetrahedra", tetrahedra.size());
-  Votes votes = cast_votes(tetrahedra, points, rays, options.votes, console_progress("Voted"));
+  context.info("{} tetrahedra", tetrahedra.size());
+  Votes votes = cast_votes(tetrahedra, points, rays, options.votes, context);
   const std::vector<bool> inside = occupied(tetrahedra, votes);
   votes = {};
   Surface surface = surface_without_long_edges(tetrahedra, points.positions, points.pixel_widths,
                                                inside, options.clean.spurious);
-  log_info("Surface: {} vertices, {} faces", surface.mesh.vertices.size(),
-           surface.mesh.faces.size());
+  context.info("Surface: {} vertices, {} faces", surface.mesh.vertices.size(),
+               surface.mesh.faces.size());
   return surface;
 }
 
@@ -100,17 +98,17 @@ void check_points(const PointCloud& cloud, const Scene& scene, std::size_t first
 }
 
 Mesh reconstruct_merged(MergedPoints points, const Scene& scene, const ViewRays& rays,
-                        const ReconstructOptions& options) {
+                        const ReconstructOptions& options, const Context& context) {
   if (points.size() < 4) return {};
   check_memory(points.size(), options);
-  Surface surface = cut_surface(points, rays, options);
+  Surface surface = cut_surface(points, rays, options, context);
   points = {};
   return_freed_memory();
   if (options.crop_to_region && scene.region) crop(surface.mesh, *scene.region);
   if (surface.mesh.faces.empty()) return {};
   CleanReport report;
   Mesh mesh = clean(surface.mesh, options.clean, &report);
-  log_info(
+  context.info(
       "Cleaned: {} spurious pieces and {} spikes removed, {} holes closed, {} faces removed "
       "that intersected others",
       report.removed_components, report.removed_spikes, report.closed_holes,
@@ -118,16 +116,17 @@ Mesh reconstruct_merged(MergedPoints points, const Scene& scene, const ViewRays&
   return mesh;
 }
 
-Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions& options) {
+Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions& options,
+                 const Context& context) {
   if (cloud.positions.empty()) fail("the cloud has no points");
   check_points(cloud, scene);
   const ViewRays rays(scene);
-  MergedPoints points = merged(std::move(cloud), scene, rays, options);
+  MergedPoints points = merged(std::move(cloud), scene, rays, options, context);
   return_freed_memory();
   check_memory(points.count, options);
   ReconstructOptions settings = options;
   settings.clean.may_be_empty = false;
-  Mesh mesh = reconstruct_merged(std::move(points), scene, rays, settings);
+  Mesh mesh = reconstruct_merged(std::move(points), scene, rays, settings, context);
   if (mesh.faces.empty()) fail("no surface separates free space from points");
   return mesh;
 }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "base/context.h"
 #include "base/setting_names.h"
 #include "mesh/clean.h"
 #include "mesh/merge_points.h"
@@ -37,8 +38,8 @@ std::uint64_t bytes_needed(std::size_t merged_points);
 // Reconstructs the surface that the images of `scene` see in `cloud`. The views of the cloud are
 // indices into Scene::images. The result is in the frame of scene and cloud, oriented, manifold and
 // free of self-intersections. Parts of the surface without points are left out. The cloud is freed
-// when its points are merged. Logs each step. The result is the same for any number of threads.
-// Throws an Error in these cases:
+// when its points are merged. Says the result of each step. The result is the same for any number
+// of threads. Throws an Error in these cases:
 //
 // * the cloud has no points or no views,
 // * a view is not a calibrated image of the scene,
@@ -46,7 +47,8 @@ std::uint64_t bytes_needed(std::size_t merged_points);
 // * fewer than four points remain after merging, or all points lie in a plane,
 // * bytes_needed() exceeds max_bytes,
 // * no surface is found, or clean() throws (clean.h).
-Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions& options = {});
+Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions& options = {},
+                 const Context& context = {});
 
 // The steps of reconstruct(), for clouds that are reconstructed in tiles (tiled.h).
 //
@@ -57,6 +59,6 @@ void check_points(const PointCloud& cloud, const Scene& scene, std::size_t first
 // faces if there are fewer than four points, if no surface is found, or if cleaning leaves no face.
 // Throws an Error if bytes_needed() exceeds max_bytes, or if all points lie in a plane.
 Mesh reconstruct_merged(MergedPoints points, const Scene& scene, const ViewRays& rays,
-                        const ReconstructOptions& options);
+                        const ReconstructOptions& options, const Context& context = {});
 
 }  // namespace axial::mesh

@@ -9,10 +9,8 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/hash.h"
-#include "base/log.h"
 #include "base/memory.h"
 #include "base/order_statistics.h"
-#include "base/progress.h"
 #include "cloud/crop.h"
 #include "io/openmvs/point_source.h"
 #include "mesh/tile_files.h"
@@ -44,11 +42,12 @@ class Sample {
 class TiledRun {
  public:
   TiledRun(const CloudSource& cloud, const Scene& scene, const ReconstructOptions& options,
-           const TileRun& run)
+           const TileRun& run, const Context& context)
       : cloud_(cloud),
         scene_(scene),
         rays_(scene),
         options_(options),
+        context_(context),
         count_(run.tiles),
         margin_(run.margin),
         files_(run.folder, origin_of(run)) {
@@ -57,8 +56,8 @@ class TiledRun {
       fail("a mesh in tiles cannot be simplified or remeshed");
     options_.clean.may_be_empty = true;
     if (files_.has_others())
-      log_warning("{}: has tiles of other input or options, which are not used",
-                  run.folder.string());
+      context.warning("{}: has tiles of other input or options, which are not used",
+                      run.folder.string());
     divide_cloud();
   }
 
@@ -67,8 +66,8 @@ class TiledRun {
     MergedPoints own = points_of(tile);
     const std::size_t own_points = own.size();
     MergedPoints points = with_margin(tile, std::move(own));
-    log_info("Tile {} of {}: {} merged points, {} of them in the tile", tile + 1, count_,
-             points.size(), own_points);
+    context_.info("Tile {} of {}: {} merged points, {} of them in the tile", tile + 1, count_,
+                  points.size(), own_points);
     const TileMesh mesh = owned_part(mesh_of(tile, std::move(points)), tiles_[tile]);
     return_freed_memory();
     files_.write(tile, mesh);
@@ -86,8 +85,9 @@ class TiledRun {
     join.spurious = options_.clean.spurious;
     JoinReport report;
     Mesh mesh = join_tiles(std::move(meshes), join, &report);
-    log_info("Joined {} tiles: {} of {} edges between tiles differ, {} faces around them mended",
-             count_, report.unmatched, report.seams, report.replaced_faces);
+    context_.info(
+        "Joined {} tiles: {} of {} edges between tiles differ, {} faces around them mended", count_,
+        report.unmatched, report.seams, report.replaced_faces);
     if (mesh.faces.empty()) fail("no surface separates free space from points");
     return mesh;
   }
@@ -101,7 +101,7 @@ class TiledRun {
   // Errors name the tile.
   Mesh mesh_of(std::size_t tile, MergedPoints points) const {
     try {
-      return reconstruct_merged(std::move(points), scene_, rays_, options_);
+      return reconstruct_merged(std::move(points), scene_, rays_, options_, context_);
     } catch (const Error& error) {
       fail("tile {} of {}: {}", tile + 1, count_, error.what());
     }
@@ -116,7 +116,7 @@ class TiledRun {
   // Passes the points to use to `sink`, and the properties of the cloud.
   void read(const std::string& title,
             const std::function<void(PointCloud, const io::CloudLayout&)>& sink) const {
-    const ProgressSink progress = console_progress(title);
+    const ProgressSink progress = context_.stage(title);
     std::size_t done = 0;
     cloud_([&](PointCloud portion, std::size_t all) {
       check_points(portion, scene_, done);
@@ -251,6 +251,7 @@ class TiledRun {
   const Scene& scene_;
   ViewRays rays_;
   ReconstructOptions options_;
+  const Context& context_;
   std::size_t count_;
   double margin_;
   TileFiles files_;
@@ -260,13 +261,15 @@ class TiledRun {
 }  // namespace
 
 Mesh reconstruct_in_tiles(const CloudSource& cloud, const Scene& scene,
-                          const ReconstructOptions& options, const TileRun& run) {
-  return TiledRun(cloud, scene, options, run).joined();
+                          const ReconstructOptions& options, const TileRun& run,
+                          const Context& context) {
+  return TiledRun(cloud, scene, options, run, context).joined();
 }
 
 void reconstruct_tile(std::size_t tile, const CloudSource& cloud, const Scene& scene,
-                      const ReconstructOptions& options, const TileRun& run) {
-  TiledRun(cloud, scene, options, run).tile_mesh(tile);
+                      const ReconstructOptions& options, const TileRun& run,
+                      const Context& context) {
+  TiledRun(cloud, scene, options, run, context).tile_mesh(tile);
 }
 
 void remove_intermediate_files(const TileRun& run) {

@@ -46,12 +46,14 @@ struct TileRun {
 // or if CleanOptions::decimate, target_faces or edge_length ask for other triangles: they would
 // differ at both sides of a border.
 Mesh reconstruct_in_tiles(const CloudSource& cloud, const Scene& scene,
-                          const ReconstructOptions& options, const TileRun& run);
+                          const ReconstructOptions& options, const TileRun& run,
+                          const Context& context = {});
 
 // Makes the file of tile `tile` (from 0) in TileRun::folder, and the files that it needs, unless
 // they are there. Other runs may make other tiles at the same time. Errors as above.
 void reconstruct_tile(std::size_t tile, const CloudSource& cloud, const Scene& scene,
-                      const ReconstructOptions& options, const TileRun& run);
+                      const ReconstructOptions& options, const TileRun& run,
+                      const Context& context = {});
 
 // Removes all intermediate files in TileRun::folder, and the folder if it has no other files. No
 // other run may use the folder.

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "geometry/lists.h"
@@ -121,14 +120,15 @@ LeastCosines by_sizes(const Mesh& mesh, float median) {
   return least;
 }
 
-LeastCosines least_cosines(const Mesh& mesh, float median_edge, const UnseenOptions& options) {
+LeastCosines least_cosines(const Mesh& mesh, float median_edge, const UnseenOptions& options,
+                           const Context& context) {
   constexpr float kFar = 9.0f, kFirst = 0.25f, kProven = -2.0f;
   if (!options.sizes_tell) return without_second_kind(mesh);
   if (options.points.empty()) return by_sizes(mesh, median_edge);
   const std::vector<float> distances = distances_to_points(mesh, options.points);
   const float middle = upper_median(distances);
   if (middle > median_edge) {
-    log_info("the cloud is too sparse for this mesh to tell which faces were measured");
+    context.info("the cloud is too sparse for this mesh to tell which faces were measured");
     return by_sizes(mesh, median_edge);
   }
   const float limit = kFar * middle;
@@ -332,13 +332,13 @@ double marked_share(const Mesh& mesh) {
 
 std::vector<std::uint8_t> unseen_faces(const Mesh& mesh,
                                        std::span<const geometry::PosedCamera> cameras,
-                                       const UnseenOptions& options, const ProgressSink& progress) {
+                                       const UnseenOptions& options, const Context& context) {
   const std::vector<float> cosines =
-      geometry::second_cosines(mesh, cameras, kLargestCosine, {}, progress);
+      geometry::second_cosines(mesh, cameras, kLargestCosine, {}, context.stage("Looked"));
   const float median_edge = median_longest_edge(mesh);
   std::vector<std::uint8_t> certain(mesh.faces.size()), unseen(mesh.faces.size());
   {
-    const LeastCosines least = least_cosines(mesh, median_edge, options);
+    const LeastCosines least = least_cosines(mesh, median_edge, options, context);
     for (std::size_t f = 0; f < unseen.size(); ++f) {
       certain[f] = !(cosines[f] > least.first[f]);
       unseen[f] = certain[f] || cosines[f] < least.second[f];
@@ -361,25 +361,25 @@ Mesh without_unseen(const Mesh& mesh, std::vector<std::uint8_t> unseen, double c
 }
 
 Mesh treat_unseen(Mesh mesh, std::span<const geometry::PosedCamera> cameras,
-                  const UnseenOptions& options, const ProgressSink& progress) {
+                  const UnseenOptions& options, const Context& context) {
   mesh.unseen = {};
   if (cameras.size() < 2) {
-    log_warning("surface that no two cameras see is kept: the scene has {} cameras",
-                cameras.size());
+    context.warning("surface that no two cameras see is kept: the scene has {} cameras",
+                    cameras.size());
     return mesh;
   }
-  mesh.unseen = unseen_faces(mesh, cameras, options, progress);
+  mesh.unseen = unseen_faces(mesh, cameras, options, context);
   const auto unseen = static_cast<std::size_t>(std::ranges::count(mesh.unseen, std::uint8_t{1}));
   const double share = 100 * marked_share(mesh);
   if (options.keep) {
-    log_info("{} faces, {:.1f} % of the area, are marked as unseen: no two cameras see them",
-             unseen, share);
+    context.info("{} faces, {:.1f} % of the area, are marked as unseen: no two cameras see them",
+                 unseen, share);
     return mesh;
   }
   if (unseen == mesh.faces.size()) fail("no two cameras see the front of a face of the mesh");
   UnseenReport report;
   Mesh rest = without_unseen(mesh, std::move(mesh.unseen), options.cut_off, &report);
-  log_info(
+  context.info(
       "{} faces removed: {}, {:.1f} % of the area, that no two cameras see, and others at their "
       "border; {} pieces were cut off",
       report.faces, unseen, share, report.pieces);

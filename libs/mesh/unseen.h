@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/context.h"
 #include "geometry/face_sights.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
@@ -53,15 +53,15 @@ struct UnseenOptions {
 // are no points inside. Other large faces are true surface with little texture.
 //
 // Exception: unseen faces inside the seen surface count as seen if they form a set whose bounding
-// box has a diagonal of at most `small_holes` median longest edges. `progress`: numbers of cameras.
-// The result does not depend on the number of threads.
+// box has a diagonal of at most `small_holes` median longest edges. `context` hears the numbers of
+// cameras. The result does not depend on the number of threads.
 //
 // Precondition: the mesh is manifold and oriented. Throws an Error for a mesh that
 // geometry::Surface refuses.
 std::vector<std::uint8_t> unseen_faces(const Mesh& mesh,
                                        std::span<const geometry::PosedCamera> cameras,
                                        const UnseenOptions& options = {},
-                                       const ProgressSink& progress = {});
+                                       const Context& context = {});
 
 // What without_unseen() removed.
 struct UnseenReport {
@@ -81,11 +81,11 @@ Mesh without_unseen(const Mesh& mesh, std::vector<std::uint8_t> unseen, double c
                     UnseenReport* report = nullptr);
 
 // Returns `mesh` without its unseen faces (without_unseen()), or, if UnseenOptions::keep is true,
-// with marks of its unseen faces (Mesh::unseen). Logs the numbers and the shares of area. With
-// fewer than two cameras, nothing is removed or marked, and a warning is logged. Throws an Error if
+// with marks of its unseen faces (Mesh::unseen). Says the numbers and the shares of area. With
+// fewer than two cameras, nothing is removed or marked, and it warns. Throws an Error if
 // removal would leave no face. Precondition and other Errors as for unseen_faces().
 Mesh treat_unseen(Mesh mesh, std::span<const geometry::PosedCamera> cameras,
-                  const UnseenOptions& options, const ProgressSink& progress = {});
+                  const UnseenOptions& options, const Context& context = {});
 
 // The memory [bytes] of treat_unseen() with its result and with UnseenOptions::points, besides
 // `mesh`.

@@ -94,13 +94,13 @@ double expected_error(const MergedPoints& points, std::size_t i, const VoteOptio
 }
 
 Votes cast_votes(const Tetrahedra& tetrahedra, const MergedPoints& points, const ViewRays& rays,
-                 const VoteOptions& options, const ProgressSink& progress) {
+                 const VoteOptions& options, const Context& context) {
   Votes votes;
   votes.outside.assign(tetrahedra.size(), 0);
   votes.inside.assign(tetrahedra.size(), 0);
   votes.facets.assign(tetrahedra.size(), {0, 0, 0, 0});
   const Stars stars = stars_of(tetrahedra, points.size());
-  in_parts(points.size(), progress, [&](std::size_t i) {
+  in_parts(points.size(), context.stage("Voted"), [&](std::size_t i) {
     if (stars.of(i).empty()) return;
     for_each_ray(points, i, rays, options,
                  [&](const Ray& ray) { cast(tetrahedra, points.positions, stars, ray, votes); });

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "base/order_statistics.h"
 #include "refine/anchor.h"
 #include "refine/choose_pairs.h"
@@ -31,7 +30,8 @@ constexpr unsigned kMostSplits = 6;  // each divides the area of a face by four
 class Work {
  public:
   // `done`: the number of resolutions that were done before.
-  Work(const Options& options, unsigned done, const ProgressSink& progress) : progress_(progress) {
+  Work(const Options& options, unsigned done, ProgressSink progress)
+      : progress_(std::move(progress)) {
     double work = 0;
     for (unsigned k = 0; k < options.scales; ++k) {
       before_.push_back(work);
@@ -53,26 +53,25 @@ class Work {
   static constexpr double kNearEnd = 0.999;  // the end itself is told once
 
   void tell(double work) const {
-    if (progress_)
-      progress_(static_cast<std::size_t>(std::floor(work / before_.back() * kTotal + 1e-6)),
-                kTotal);
+    progress_(static_cast<std::size_t>(std::floor(work / before_.back() * kTotal + 1e-6)), kTotal);
   }
 
-  const ProgressSink& progress_;
+  ProgressSink progress_;
   std::vector<double> before_;  // the work before each resolution, and all work
 };
 
 class Refinement {
  public:
   Refinement(State& state, std::span<const PosedCamera> views, const Pictures& pictures,
-             const Options& options, const ProgressSink& progress)
+             const Options& options, const Context& context)
       : state_(state),
         mesh_(state.mesh),
         report_(state.report),
         views_(views),
         pictures_(pictures),
         options_(options),
-        work_(options, state.done, progress) {}
+        context_(context),
+        work_(options, state.done, context.stage("Refined")) {}
 
   void run(const Checkpoint& checkpoint) {
     if (state_.done == 0)
@@ -119,8 +118,9 @@ class Refinement {
     }
     if (state_.pairs.empty()) fail("no two views see the same part of the mesh");
     report_.pairs = state_.pairs.size();
-    log_info("{} vertices, {} faces ({} added by splitting), {} pairs of views",
-             mesh_.vertices.size(), mesh_.faces.size(), report_.split_faces, state_.pairs.size());
+    context_.info("{} vertices, {} faces ({} added by splitting), {} pairs of views",
+                  mesh_.vertices.size(), mesh_.faces.size(), report_.split_faces,
+                  state_.pairs.size());
   }
 
   // Marks the faces to split, if any may be split. If there is none, chooses the pairs of views.
@@ -146,7 +146,7 @@ class Refinement {
       if (!visibility) visibility = find_visibility(mesh_, shape, views, images);
       const std::vector<FaceEquations> equations = measure(views, shape, *visibility, images, k);
       const double moved = step(equations, shape, factor);
-      log_details("Step {} at {} of the size: median displacement {}", k, factor, moved);
+      context_.details("Step {} at {} of the size: median displacement {}", k, factor, moved);
       ++report_.steps;
       if (k == 0) first_step = moved;
       if (k + 1 >= kLeastSteps && moved <= kLastStep * first_step) break;
@@ -224,6 +224,7 @@ class Refinement {
   const std::span<const PosedCamera> views_;
   const Pictures& pictures_;
   const Options& options_;
+  const Context& context_;
   const Work work_;
   Topology topology_;
   std::vector<double> information_;  // of every vertex in the last step
@@ -233,17 +234,17 @@ class Refinement {
 }  // namespace
 
 void refine(State& state, std::span<const PosedCamera> views, const Pictures& pictures,
-            const Options& options, const ProgressSink& progress, const Checkpoint& checkpoint) {
+            const Options& options, const Checkpoint& checkpoint, const Context& context) {
   check_mesh(state.mesh);
-  Refinement(state, views, pictures, options, progress).run(checkpoint);
+  Refinement(state, views, pictures, options, context).run(checkpoint);
 }
 
 Report refine(Mesh& mesh, std::span<const PosedCamera> views, const Pictures& pictures,
-              const Options& options, const ProgressSink& progress) {
+              const Options& options, const Context& context) {
   State state;
   std::swap(state.mesh, mesh);
   try {
-    refine(state, views, pictures, options, progress);
+    refine(state, views, pictures, options, {}, context);
   } catch (...) {
     std::swap(state.mesh, mesh);
     throw;

@@ -36,7 +36,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/context.h"
 #include "base/setting_names.h"
 #include "geometry/posed_camera.h"
 #include "scene/mesh.h"
@@ -122,19 +122,19 @@ using Checkpoint = std::function<void(const State& state)>;
 //
 // `state`: a mesh alone, or a state that `checkpoint` received in a call with the same views,
 // pictures and options. From such a state, the refinement goes on to the same result.
-// `views`: all views. `pictures` is called with indices into `views`. `progress` gets numbers that
-// never fall: parts of the expected work of this call, in which a resolution counts in proportion
-// to its pixels.
+// `views`: all views. `pictures` is called with indices into `views`. The progress of the stage
+// "Refined" never falls: it is the part of the expected work of this call, in which a resolution
+// counts in proportion to its pixels.
 //
 // Throws an Error if check_mesh() refuses the mesh (scene/check_mesh.h), for example a mesh without
 // faces. Throws an Error if no two views see the same surface, or if max_bytes is not enough. After
 // the last two errors, faces of `state.mesh` may have been split.
 void refine(State& state, std::span<const PosedCamera> views, const Pictures& pictures,
-            const Options& options = {}, const ProgressSink& progress = {},
-            const Checkpoint& checkpoint = {});
+            const Options& options = {}, const Checkpoint& checkpoint = {},
+            const Context& context = {});
 
 // The same for a mesh alone, which is refined in place.
 Report refine(Mesh& mesh, std::span<const PosedCamera> views, const Pictures& pictures,
-              const Options& options = {}, const ProgressSink& progress = {});
+              const Options& options = {}, const Context& context = {});
 
 }  // namespace axial::refine

@@ -10,7 +10,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/hash.h"
-#include "base/log.h"
 
 namespace axial::refine {
 namespace {
@@ -137,7 +136,7 @@ std::optional<State> read_state(const std::filesystem::path& file, const std::st
 }
 
 StateOfRun::~StateOfRun() {
-  if (is_removed_) remove();
+  if (is_removed_ && !context_.stop_requested()) remove();
 }
 
 void StateOfRun::write(const State& state, const std::string& fingerprint) {
@@ -152,7 +151,7 @@ void StateOfRun::writing(const std::function<void()>& write) {
     is_removed_ = false;
     std::error_code ignored;
     if (std::filesystem::exists(file_, ignored))
-      log_warning("{}: is kept: the same command continues from there", file_.string());
+      context_.warning("{}: is kept: the same command continues from there", file_.string());
     throw;
   }
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "base/context.h"
 #include "refine/refine.h"
 
 namespace axial::refine {
@@ -27,10 +28,13 @@ std::optional<State> read_state(const std::filesystem::path& file, const std::st
 
 // The file of the state of a run. A state that this run wrote is removed if the run ends with an
 // error: the next run would meet the same error. It is kept if a file cannot be written, because
-// the run can continue when this is mended. The state of an earlier, killed run is kept, too.
+// the run can continue when this is mended. The state of a run that is stopped, or of an earlier,
+// killed run, is kept, too.
 class StateOfRun {
  public:
-  explicit StateOfRun(std::filesystem::path file) : file_(std::move(file)) {}
+  // `context` hears the warning. It must exist as long as the object.
+  StateOfRun(std::filesystem::path file, const Context& context)
+      : file_(std::move(file)), context_(context) {}
   // Removes the state if write() has written it and writing() has thrown nothing.
   ~StateOfRun();
   StateOfRun(const StateOfRun&) = delete;
@@ -47,6 +51,7 @@ class StateOfRun {
 
  private:
   std::filesystem::path file_;
+  const Context& context_;
   bool is_removed_ = false;
 };
 

@@ -122,8 +122,7 @@ class TileLabels {
     const std::string stage =
         fmt::format("Views of faces, tile {} of {}", tile + 1, tiles_.count());
     return find_face_views(part, whole, sources.views, sources.images, sources.options.visibility,
-                           sources.progress ? sources.progress(stage) : ProgressSink{},
-                           {budget, sources.options.image_bytes});
+                           sources.context.stage(stage), {budget, sources.options.image_bytes});
   }
 
   // Returns the number of removed sights of the tile's own faces.
@@ -162,8 +161,7 @@ std::vector<std::uint32_t> label_in_one_piece(const Mesh& mesh, std::span<const 
   const Options& options = sources.options;
   FaceViews seen =
       find_face_views(mesh, sources.views, sources.images, options.visibility,
-                      sources.progress ? sources.progress("Views of faces") : ProgressSink{},
-                      {budget, options.image_bytes});
+                      sources.context.stage("Views of faces"), {budget, options.image_bytes});
   return_freed_memory();
   if (options.take_views) options.take_views(mesh, seen);
   report.outliers = remove_outliers(seen, options.outlier_threshold);

@@ -30,7 +30,7 @@ struct Sources {
   std::span<const View> views;
   const ImageSource& images;
   const Options& options;
-  const StageProgress& progress;
+  const Context& context;
 };
 
 // Returns the label of each face (labels.h). `pairs`: the result of face_pairs(). Sets

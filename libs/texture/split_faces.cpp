@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "base/parallel.h"
 #include "geometry/edges.h"
 
@@ -174,7 +173,7 @@ std::uint64_t bytes_to_split(std::uint64_t faces, std::uint64_t split) {
 }
 
 std::size_t split_faces(Mesh& mesh, std::span<const View> views, const SplitOptions& options,
-                        const Budget& budget) {
+                        const Budget& budget, const Context& context) {
   const std::size_t before = mesh.faces.size();
   constexpr int kMostRounds = 16;
   for (int round = 0; round < kMostRounds; ++round) {
@@ -185,8 +184,8 @@ std::size_t split_faces(Mesh& mesh, std::span<const View> views, const SplitOpti
     const auto count = static_cast<std::size_t>(std::ranges::count(marked, 1));
     if (count == 0) break;
     if (mesh.faces.size() + 2 * count > options.max_faces) {
-      log_warning("faces are not split further: {} faces, and {} edges to split", mesh.faces.size(),
-                  count);
+      context.warning("faces are not split further: {} faces, and {} edges to split",
+                      mesh.faces.size(), count);
       break;
     }
     budget.require(bytes_to_split(mesh.faces.size(), count), work);

@@ -19,33 +19,33 @@ std::uint64_t bytes_of(const Mesh& mesh) {
 }  // namespace
 
 TexturedMesh texture_mesh(Mesh mesh, std::span<const View> views, const ImageSource& images,
-                          const Options& options, Report* report, const StageProgress& progress) {
+                          const Options& options, Report* report, const Context& context) {
   Options whole = options;
   whole.tiles = 1;
   TexturedMesh result;
   texture_tiles(
       std::move(mesh), views, images, whole,
-      [&](std::size_t, TexturedMesh textured) { result = std::move(textured); }, report, progress);
+      [&](std::size_t, TexturedMesh textured) { result = std::move(textured); }, report, context);
   return result;
 }
 
 void texture_tiles(Mesh mesh, std::span<const View> views, const ImageSource& images,
                    const Options& options, const TileSink& take, Report* report,
-                   const StageProgress& progress) {
+                   const Context& context) {
   check_mesh(mesh);
   Report own;
   Report& facts = report ? *report : own;
   facts = {};
   const std::uint64_t given = bytes_of(mesh);
   Budget budget(options.max_bytes, options.name_of);
-  facts.new_faces = split_faces(mesh, views, options.split, budget);
+  facts.new_faces = split_faces(mesh, views, options.split, budget, context);
   budget = budget.without(bytes_of(mesh) - given, "splitting faces");
   budget.require(bytes_to_pair(mesh.faces.size()), "listing the edges of the mesh");
   const std::vector<FacePair> pairs = face_pairs(mesh.faces);
   budget = budget.without(pairs.size() * sizeof(FacePair), "listing the edges of the mesh");
   budget = budget.without(bytes_to_divide(mesh, options.tiles), "dividing the mesh");
   FaceTiles tiles = divide_faces(mesh, options.tiles, options.axes);
-  const Sources sources{views, images, options, progress};
+  const Sources sources{views, images, options, context};
   const std::vector<std::uint32_t> labels = label_faces(mesh, pairs, tiles, sources, budget, facts);
   return_freed_memory();
   facts.unseen_faces = static_cast<std::size_t>(std::ranges::count(labels, kNoView));

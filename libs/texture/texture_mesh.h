@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "base/context.h"
 #include "base/setting_names.h"
 #include "scene/textured_mesh.h"
 #include "texture/face_views.h"
@@ -66,10 +67,6 @@ struct Report {
   std::size_t scaled_down = 0;   // charts that were larger than a texture
 };
 
-// Returns the ProgressSink for a stage with the given name. texture_mesh() calls the function at
-// the start of each stage that takes long.
-using StageProgress = std::function<ProgressSink(const std::string& stage)>;
-
 // Returns `mesh` with textures. Each face gets the colours of one of the views that see the face,
 // as chosen by choose_views() (labels.h). A face that no view sees, or that
 // is marked (Mesh::unseen), gets Options::empty_color. Marks are kept. Faces
@@ -82,7 +79,7 @@ using StageProgress = std::function<ProgressSink(const std::string& stage)>;
 // max_bytes does not suffice for a stage. Exceptions of `images` are passed on.
 TexturedMesh texture_mesh(Mesh mesh, std::span<const View> views, const ImageSource& images,
                           const Options& options = {}, Report* report = nullptr,
-                          const StageProgress& progress = {});
+                          const Context& context = {});
 
 // Takes the textured mesh of a tile. `tile`: its index.
 using TileSink = std::function<void(std::size_t tile, TexturedMesh mesh)>;
@@ -106,6 +103,6 @@ using TileSink = std::function<void(std::size_t tile, TexturedMesh mesh)>;
 // for each tile that uses it. Errors as for texture_mesh(). Exceptions of `take` are passed on.
 void texture_tiles(Mesh mesh, std::span<const View> views, const ImageSource& images,
                    const Options& options, const TileSink& take, Report* report = nullptr,
-                   const StageProgress& progress = {});
+                   const Context& context = {});
 
 }  // namespace axial::texture

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
@@ -77,8 +76,9 @@ TilePainter::TilePainter(Mesh& mesh, const Charts& charts, std::span<const FaceP
       budget_(budget.without(bytes_of_atlas(atlas_) + seams_.size() * sizeof(Seam),
                              fmt::format("packing {} charts", charts.charts.size()))) {
   if (atlas_.scaled_down > 0)
-    log_warning("{} parts of photographs are larger than a texture and are scaled down",
-                atlas_.scaled_down);
+    sources_.context.warning(
+        "{} parts of photographs are larger than a texture and are scaled down",
+        atlas_.scaled_down);
   check_writing();
 }
 

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "belong/surface_fit.h"
 #include "hilly_scene.h"
+#include "support/captured_events.h"
 
 namespace axial::belong {
 namespace {
@@ -21,13 +21,13 @@ const SurfaceCheck kNames{"mesh.ply", "scene.mvs"};
 
 // The error or the warnings of the check; empty: the shape passes.
 std::string verdict(const Scene& scene, const Shape& shape, const SurfaceCheck& check = kNames) {
-  const LogCapture log;
+  const test::CapturedEvents events;
   try {
-    check_surface(scene, shape, check);
+    check_surface(scene, shape, check, events.context);
   } catch (const Error& error) {
     return error.what();
   }
-  return log.text();
+  return events.lines;
 }
 
 template <class Change>
@@ -99,17 +99,17 @@ TEST(SurfaceCheck, IsAWarningWhereItIsDoubtful) {
   const double largest = largest_distance(scene, shape_of(lower), 0);
   ASSERT_GT(distance, largest);
   ASSERT_LT(distance, 2 * largest);
-  const LogCapture log;
-  EXPECT_NO_THROW(check_surface(scene, shape_of(lower), kNames));
-  EXPECT_THAT(log.text(), HasSubstr("mesh.ply: does not belong to scene.mvs"));
+  const test::CapturedEvents events;
+  EXPECT_NO_THROW(check_surface(scene, shape_of(lower), kNames, events.context));
+  EXPECT_THAT(events.lines, HasSubstr("mesh.ply: does not belong to scene.mvs"));
 }
 
 TEST(SurfaceCheck, OnlyWarnsOnDemand) {
   const Scene scene = hilly_scene();
-  const LogCapture log;
-  EXPECT_NO_THROW(
-      check_surface(scene, shape_of(scaled(ground(0), 1000)), {"mesh.ply", "scene.mvs", true}));
-  EXPECT_THAT(log.text(), HasSubstr("millimetres"));
+  const test::CapturedEvents events;
+  EXPECT_NO_THROW(check_surface(scene, shape_of(scaled(ground(0), 1000)),
+                                {"mesh.ply", "scene.mvs", true}, events.context));
+  EXPECT_THAT(events.lines, HasSubstr("millimetres"));
 }
 
 TEST(SurfaceCheck, PassesAPartOfTheMesh) {

@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "base/log.h"
 #include "base/parallel.h"
+#include "support/captured_events.h"
 #include "worlds/height_field.h"
 #include "worlds/ports.h"
 
@@ -76,12 +76,12 @@ TEST(SeenPart, WithoutSightsThereIsNothing) {
 }
 
 TEST(SeenPart, TheWarningNamesTheMeshAndTheRemedy) {
-  const LogCapture log;
-  warn_if_inside_out({.front = 10, .back = 20}, "a.ply");
-  EXPECT_EQ(log.text(), "");
-  warn_if_inside_out({.front = 1, .back = 99}, "a.ply");
-  EXPECT_THAT(log.text(), HasSubstr("a.ply: the mesh is inside out: the cameras see 99 % of its "
-                                    "faces from behind; flip the faces in an editor"));
+  const test::CapturedEvents events;
+  warn_if_inside_out({.front = 10, .back = 20}, "a.ply", events.context);
+  EXPECT_EQ(events.lines, "");
+  warn_if_inside_out({.front = 1, .back = 99}, "a.ply", events.context);
+  EXPECT_THAT(events.lines, HasSubstr("a.ply: the mesh is inside out: the cameras see 99 % of its "
+                                      "faces from behind; flip the faces in an editor"));
 }
 
 TEST(EraseAt, KeepsTheOthers) {

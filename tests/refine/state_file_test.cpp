@@ -4,11 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <stop_token>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/log.h"
 #include "refine/photographed_mesh.h"
+#include "support/captured_events.h"
 #include "support/empty_folder.h"
 
 namespace axial::refine {
@@ -34,10 +35,10 @@ Options three_resolutions() {
   return options;
 }
 
-void run(State& state, const ProgressSink& progress = {}, const Checkpoint& checkpoint = {}) {
+void run(State& state, const Checkpoint& checkpoint = {}, const Context& context = {}) {
   refine(
       state, photographed().views, [](std::size_t i) { return photographed().pictures[i]; },
-      three_resolutions(), progress, checkpoint);
+      three_resolutions(), checkpoint, context);
 }
 
 TEST(StateFile, ARunGoesOnFromEachCheckpointToTheSameResult) {
@@ -45,7 +46,7 @@ TEST(StateFile, ARunGoesOnFromEachCheckpointToTheSameResult) {
   std::vector<std::string> files;
   State whole = noisy();
   const std::string print = fingerprint(whole.mesh, three_resolutions(), "views");
-  run(whole, {}, [&](const State& state) {
+  run(whole, [&](const State& state) {
     write_state(file, state, print);
     files.push_back(read_file(file));
   });
@@ -71,13 +72,11 @@ TEST(StateFile, ARunGoesOnFromEachCheckpointToTheSameResult) {
 // The numbers that a run tells, from `state` on.
 std::vector<std::size_t> told(State& state, const Checkpoint& checkpoint = {}) {
   std::vector<std::size_t> numbers;
-  run(
-      state,
-      [&](std::size_t done, std::size_t total) {
-        EXPECT_EQ(total, 1000u);
-        numbers.push_back(done);
-      },
-      checkpoint);
+  run(state, checkpoint, Context([&](const Event& event) {
+        if (event.kind == Event::Kind::line || event.total == 0) return;
+        EXPECT_EQ(event.total, 1000u);
+        numbers.push_back(event.done);
+      }));
   return numbers;
 }
 
@@ -128,16 +127,19 @@ class RunWithState : public testing::Test {
  protected:
   // A run that ends with an Error after `work`.
   template <class Work>
-  void failing_run(Work work) const {
+  void failing_run(Work work) {
     EXPECT_THROW(
         {
-          StateOfRun state(file_);
+          StateOfRun state(file_, context_);
           work(state);
           fail("a photograph cannot be read");
         },
         Error);
   }
 
+  test::CapturedEvents events_;
+  std::stop_source stop_;
+  const Context context_{events_.sink(), stop_.get_token()};
   const std::filesystem::path file_ = test::empty_folder() / "mesh.state";
   const std::string print_ = std::string(32, 'a');
 };
@@ -156,14 +158,22 @@ TEST_F(RunWithState, AnErrorKeepsTheStateOfAnEarlierRun) {
   EXPECT_TRUE(read_state(file_, print_));
 }
 
+TEST_F(RunWithState, AStopKeepsTheState) {
+  failing_run([&](StateOfRun& state) {
+    state.write({}, print_);
+    stop_.request_stop();
+  });
+  EXPECT_TRUE(read_state(file_, print_));
+}
+
 TEST_F(RunWithState, AFileThatCannotBeWrittenKeepsTheState) {
-  const LogCapture log;
   failing_run([&](StateOfRun& state) {
     state.write({}, print_);
     state.writing([] { fail("mesh.ply: cannot be written"); });
   });
   EXPECT_TRUE(read_state(file_, print_));
-  EXPECT_NE(log.text().find("mesh.state: is kept: the same command continues"), std::string::npos);
+  EXPECT_NE(events_.lines.find("mesh.state: is kept: the same command continues"),
+            std::string::npos);
 }
 
 TEST(StateFile, TheFingerprintDependsOnEverythingThatChangesTheResult) {

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/context.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "base/message.h"
+
+namespace axial {
+
+Context::Context(EventSink sink, std::stop_token stop)
+    : sink_(std::move(sink)), stop_(std::move(stop)) {}
+
+ProgressSink Context::stage(const std::string& title) const {
+  check_stop();
+  send({Event::Kind::progress, LogLevel::info, title});
+  return [this, title](std::size_t done, std::size_t total) {
+    check_stop();
+    send({Event::Kind::progress, LogLevel::info, title, done, total});
+  };
+}
+
+void Context::check_stop() const {
+  if (stop_requested()) throw Stopped();
+}
+
+void Context::send(LogLevel level, fmt::string_view format, fmt::format_args arguments) const {
+  if (!sink_) return;
+  std::string line = fmt::vformat(format, arguments);
+  send({Event::Kind::line, level, level == LogLevel::warning ? as_message(line) : line});
+}
+
+void Context::send(const Event& event) const {
+  if (!sink_) return;
+  const std::lock_guard lock(mutex_);
+  sink_(event);
+}
+
+}  // namespace axial

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The surroundings of a stage: who hears its events, and who may stop it. A function that logs,
+// reports progress or works long takes a Context as its last argument. Without a Context, it is
+// silent and cannot be stopped.
+#pragma once
+
+#include <fmt/core.h>
+
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+#include <string>
+
+#include "base/log.h"
+#include "base/progress.h"
+
+namespace axial {
+
+// A line of text, or the progress of a stage.
+struct Event {
+  enum class Kind { line, progress };
+  Kind kind = Kind::line;
+  LogLevel level = LogLevel::info;  // of a line
+  // The line, or the title of the stage. A warning is one line of at most 500 bytes
+  // (base/message.h).
+  std::string text;
+  // The number of items done and of all items of the stage. Both are 0 when the stage begins.
+  std::size_t done = 0, total = 0;
+};
+
+using EventSink = std::function<void(const Event&)>;
+
+// Ends a stage whose stop was requested. Its files are those of a run that was killed: the same run
+// continues from them.
+class Stopped : public std::exception {
+ public:
+  const char* what() const noexcept override { return "stopped"; }
+};
+
+class Context {
+ public:
+  Context() = default;
+  // `sink` gets all events, from one thread at a time. It may be empty. After a request to stop by
+  // the source of `stop`, check_stop() and the sinks of stage() throw Stopped.
+  explicit Context(EventSink sink, std::stop_token stop = {});
+
+  // Each sends a line: `format` with `args` in place of its "{}" (fmt's syntax).
+  template <class... Args>
+  void warning(fmt::format_string<Args...> format, Args&&... args) const {
+    send(LogLevel::warning, format, fmt::make_format_args(args...));
+  }
+  template <class... Args>
+  void info(fmt::format_string<Args...> format, Args&&... args) const {
+    send(LogLevel::info, format, fmt::make_format_args(args...));
+  }
+  template <class... Args>
+  void details(fmt::format_string<Args...> format, Args&&... args) const {
+    send(LogLevel::trace, format, fmt::make_format_args(args...));
+  }
+
+  // Begins a stage, and returns the sink for its progress. The Context must exist as long as the
+  // sink.
+  ProgressSink stage(const std::string& title) const;
+
+  bool stop_requested() const { return stop_.stop_requested(); }
+  // Throws Stopped after a request to stop.
+  void check_stop() const;
+
+ private:
+  void send(LogLevel level, fmt::string_view format, fmt::format_args arguments) const;
+  void send(const Event& event) const;
+
+  EventSink sink_;
+  std::stop_token stop_;
+  mutable std::mutex mutex_;
+};
+
+}  // namespace axial
