@@ -24,7 +24,7 @@ TEST(Context, SendsLinesAndProgressInTheirOrder) {
   ASSERT_EQ(events.size(), 5u);
   EXPECT_EQ(events[0].text, "3 points");
   EXPECT_EQ(events[0].level, LogLevel::info);
-  for (const std::size_t i : {1, 2}) {
+  for (const std::size_t i : {1u, 2u}) {
     EXPECT_EQ(events[i].kind, Event::Kind::progress);
     EXPECT_EQ(events[i].text, "Matched");
     EXPECT_EQ(events[i].done, i - 1);
