@@ -208,13 +208,12 @@ void drop_unseen(std::vector<pose::KnownDistance>& distances, const pose::Bundle
 }
 
 // Refines the bundle of COLMAP's poses. Known lengths that get lost are left out.
-void refine_first(pose::Bundle& bundle, pose::RefineOptions& options,
-                  const pose::TextSink& progress) {
+void refine_first(pose::Bundle& bundle, pose::RefineOptions& options, const Context& context) {
   drop_unseen(options.adjust.distances, bundle);
   const pose::Bundle start = bundle;
   while (true) {
     pose::bring_to_metres(bundle, options.adjust);
-    if (pose::refine(bundle, options, progress).lost.empty()) return;
+    if (pose::refine(bundle, options, context).lost.empty()) return;
     options.adjust.distances.clear();
     bundle = start;
   }
@@ -254,15 +253,15 @@ LeftOutPhotographs add_left_out(const fs::path& file, std::span<const io::Colmap
 
 Registered register_left_out(ColmapModel& model, const LeftOutPhotographs& left_out,
                              pose::Bundle bundle, pose::RefineOptions options,
-                             const pose::TextSink& progress) {
-  refine_first(bundle, options, progress);
+                             const Context& context) {
+  refine_first(bundle, options, context);
   pose::RegisterOptions registering;
   registering.adjust = options.adjust;
   registering.tracks = options.tracks;
   for (const io::ColmapPoint3D& point : model.points)
     registering.last_source = std::max<std::size_t>(registering.last_source, point.id);
   const pose::RegisterReport report =
-      pose::register_photographs(bundle, left_out.matches, registering, progress);
+      pose::register_photographs(bundle, left_out.matches, registering, context);
   Registered registered = named(report, left_out, model);
   ModelWriter writer(model, bundle);
   writer.move(left_out.first);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/console.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parallel.h"
@@ -10,7 +11,8 @@ namespace {
 
 // Tells the errors, judges the result, and writes it.
 void finish(const Options& options, const Input& input, const Refined& refined,
-            const UnusedInput& unused, const std::optional<Registered>& registered) {
+            const UnusedInput& unused, const std::optional<Registered>& registered,
+            const Context& context) {
   const bool scale_lost = !unused.lines().empty();
   if (scale_lost) log_warning("The model has no scale: --scale-from is not used");
   Results results{refined.report,
@@ -26,7 +28,7 @@ void finish(const Options& options, const Input& input, const Refined& refined,
     results.unused.push_back("--scale-from: " + line);
   if (registered) results.registered = &*registered;
   judge(options, refined, results);
-  const pose::Uncertainty known = write(options, input, refined, results);
+  const pose::Uncertainty known = write(options, input, refined, results, context);
   for (const std::string& line : uncertainty_lines(results, known)) log_info("{}", line);
   if (!results.options.poses_known) log_info("{}", shape_line(known));
   judge_numbers(options, known, results);
@@ -35,6 +37,7 @@ void finish(const Options& options, const Input& input, const Refined& refined,
 int run(int argc, char** argv) {
   Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
+  const Context context(console_events());
   const ThreadLimit threads(options.parsed.common.max_threads);
   if (!options.effective_lens.empty()) {
     write_effective_lenses(options);
@@ -42,10 +45,10 @@ int run(int argc, char** argv) {
   }
   Input input = read_input(options);
   check_output(options, input);
-  const std::optional<Registered> registered = register_photographs(options, input);
+  const std::optional<Registered> registered = register_photographs(options, input, context);
   UnusedInput unused(options.allow_missing);
-  const Refined refined = refine(options, input, unused);
-  finish(options, input, refined, unused, registered);
+  const Refined refined = refine(options, input, unused, context);
+  finish(options, input, refined, unused, registered, context);
   return 0;
 }
 

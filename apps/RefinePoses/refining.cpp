@@ -26,16 +26,15 @@ LocalFrame enter_local_frame(std::vector<pose::KnownPosition>& positions) {
 }
 
 // The kind of port for --housing unknown. `bundle` is behind usual flat ports and is brought to
-// metres. `progress` gets the errors of each kind. Without a port, cameras are those behind a dome
+// metres. `context` hears the errors of each kind. Without a port, cameras are those behind a dome
 // around the camera centre.
 pose::PortKind likely_kind(pose::Bundle& bundle, const pose::AdjustOptions& adjust,
-                           const pose::TextSink& progress) {
+                           const Context& context) {
   pose::bring_to_metres(bundle, adjust);
   const std::vector<diagnosis::KindFit> fits = diagnosis::fits_of_kinds(bundle, adjust);
   const auto better = diagnosis::better_kind(fits);
   for (const diagnosis::KindFit& fit : fits)
-    progress(
-        fmt::format("With {}, errors are {:.3g} px", diagnosis::words_for(fit.kind), fit.error));
+    context.info("With {}, errors are {:.3g} px", diagnosis::words_for(fit.kind), fit.error);
   return better ? pose::PortKind::dome : pose::PortKind::flat;
 }
 
@@ -48,29 +47,11 @@ bool are_possible(const io::Housing& housing) {
   }
 }
 
-// Writes lines of progress to the log.
-class ProgressLines {
- public:
-  void log(const std::string& line) {
-    last_ = Clock::now();
-    log_info("{}", line);
-  }
-  // Writes the line only if the last one is two seconds old, so that small models do not fill the
-  // log.
-  void log_if_due(const std::string& line) {
-    if (Clock::now() - last_ >= std::chrono::seconds(2)) log(line);
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point last_ = Clock::now();
-};
-
 // Refines a bundle from its start, and again if its input must change.
 class Refining {
  public:
-  Refining(Options& options, Input& input, UnusedInput& unused)
-      : options_(options), input_(input), unused_(unused) {
+  Refining(Options& options, Input& input, UnusedInput& unused, const Context& context)
+      : options_(options), input_(input), unused_(unused), context_(context) {
     refined_.after = bundle_of(options, input, input.housing);
     check_ports(options, input, bundle());
     set_known();
@@ -99,6 +80,7 @@ class Refining {
   Options& options_;
   Input& input_;
   UnusedInput& unused_;
+  const Context& context_;
   Refined refined_;
 };
 
@@ -118,8 +100,7 @@ void Refining::set_known() {
 void Refining::find_unknown_kind() {
   if (options_.usual_housing != "unknown") return;
   pose::Bundle bundle = refined_.after.bundle;
-  const pose::PortKind kind = likely_kind(bundle, options_.refine.adjust,
-                                          [](const std::string& line) { log_info("{}", line); });
+  const pose::PortKind kind = likely_kind(bundle, options_.refine.adjust, context_);
   log_info("The housing is taken for {}", diagnosis::words_for(kind));
   if (kind == pose::PortKind::dome) start_with(kind);
 }
@@ -137,12 +118,8 @@ void Refining::refine_once() {
   pose::bring_to_metres(bundle, options_.refine.adjust);
   log_info("Starts with points at a median distance of {:.3g} m", pose::median_distance(bundle));
   refined_.before = bundle;
-  ProgressLines lines;
-  refined_.report = naming(options_.model, [&] {
-    return pose::refine(
-        bundle, options_.refine, [&](const std::string& line) { lines.log(line); },
-        [&](const std::string& line) { lines.log_if_due(line); });
-  });
+  refined_.report =
+      naming(options_.model, [&] { return pose::refine(bundle, options_.refine, context_); });
 }
 
 // If refining drops the images or points that --scale-from names, reports this, clears
@@ -179,31 +156,33 @@ Refined Refining::take() {
 
 }  // namespace
 
-std::optional<Registered> register_photographs(const Options& options, Input& input) {
+std::optional<Registered> register_photographs(const Options& options, Input& input,
+                                               const Context& context) {
   // With poses of all photographs, the tracks are those of COLMAP.
   if (!input.left_out || !input.left_out->any(input.model)) return {};
   pose::Bundle bundle = bundle_of(options, input, input.housing).bundle;
   pose::RefineOptions refining = options.refine;
   refining.adjust.distances = known_lengths(options.scale_from, options.scale_sigma, bundle);
   if (options.usual_housing == "unknown" &&
-      likely_kind(bundle, refining.adjust, [](const std::string&) {}) == pose::PortKind::dome)
+      likely_kind(bundle, refining.adjust, Context()) == pose::PortKind::dome)
     bundle = bundle_of(options, input, usual_housing(pose::PortKind::dome)).bundle;
   pose::set_estimated_numbers(options.refine_list, options.sigmas, bundle, refining.adjust,
                               options.parsed.option_of);
   log_info("{}: seeks poses of {} photographs without a pose among {} with poses",
            options.database.string(), input.model.images.size() - input.left_out->first,
            input.left_out->first);
+  const Context registering(context.with_prefix("Registering: "), context.stop_token());
   Registered registered = naming(options.model, [&] {
     return register_left_out(input.model, *input.left_out, std::move(bundle), refining,
-                             [](const std::string& line) { log_info("Registering: {}", line); });
+                             registering);
   });
   input.left_out.reset();
   log_registered(registered);
   return registered;
 }
 
-Refined refine(Options& options, Input& input, UnusedInput& unused) {
-  Refining refining(options, input, unused);
+Refined refine(Options& options, Input& input, UnusedInput& unused, const Context& context) {
+  Refining refining(options, input, unused, context);
   refining.find_unknown_kind();
   refining.tell_input();
   refining.refine_with_or_without_scale();

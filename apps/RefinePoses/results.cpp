@@ -56,25 +56,20 @@ pose::Uncertainty write_results(const fs::path& folder,
 }
 
 pose::Uncertainty write(const Options& options, const Input& input, const Refined& refined,
-                        const Results& results) {
+                        const Results& results, const Context& context) {
   const pose::ColmapBundle& after = refined.after;
   const auto sigmas = pose::present_sigmas(after.bundle, results.options, nullptr);
   const io::Housing housing = to_housing(after, input.housing, sigmas);
   for (const auto& [name, port] : housing.ports) io::check_port(port, "The refined port " + name);
   io::ColmapModel model = to_model(after, input.model, sigmas);
   io::leave(refined.frame, model);
-  // With fewer images, the parts of the work take less than a second.
-  const bool is_long = after.bundle.images.size() >= results.options.many_images;
-  const auto log_if_long = [&](const std::string& line) {
-    if (is_long) log_info("{}", line);
-  };
   return write_results(
       options.output, [&](const fs::path& folder) { write_model(options, folder, model, housing); },
       results,
       [&] {
         log_info("Refined model in {}", options.output.string());
         model = {};
-        pose::Uncertainty known = pose::uncertainty(after.bundle, results.options, log_if_long);
+        pose::Uncertainty known = pose::uncertainty(after.bundle, results.options, context);
         write_sigmas(options, input, after, known);
         return known;
       });

@@ -54,7 +54,8 @@ void check_ports(const Options& options, const Input& input, const pose::Bundle&
 
 // Gives poses to photographs that COLMAP left out, if there are any, and changes the model of
 // `input`. Known positions are not used yet.
-std::optional<Registered> register_photographs(const Options& options, Input& input);
+std::optional<Registered> register_photographs(const Options& options, Input& input,
+                                               const Context& context);
 
 // The bundle before refining, in metres, and after it.
 struct Refined {
@@ -69,7 +70,7 @@ struct Refined {
 // impossible port and the photographs fit another kind. Input that --scale-from names and that
 // cannot be used is reported to `unused`; the bundle is then refined without it. Sets the known and
 // unknown numbers of `options.refine.adjust`. Progress goes to the log.
-Refined refine(Options& options, Input& input, UnusedInput& unused);
+Refined refine(Options& options, Input& input, UnusedInput& unused, const Context& context);
 
 // A kind of port that the photographs fit better than the stated kind.
 struct OtherKind {
@@ -93,6 +94,6 @@ void judge_numbers(const Options& options, const pose::Uncertainty& known, const
 // with their standard deviations. Returns the standard deviations. Error if a refined port is
 // impossible.
 pose::Uncertainty write(const Options& options, const Input& input, const Refined& refined,
-                        const Results& results);
+                        const Results& results, const Context& context);
 
 }  // namespace axial::apps

@@ -12,6 +12,13 @@ namespace axial {
 Context::Context(EventSink sink, std::stop_token stop)
     : sink_(std::move(sink)), stop_(std::move(stop)) {}
 
+EventSink Context::with_prefix(std::string prefix) const {
+  return [this, prefix = std::move(prefix)](Event event) {
+    event.text = prefix + event.text;
+    send(event);
+  };
+}
+
 ProgressSink Context::stage(const std::string& title) const {
   check_stop();
   send({Event::Kind::progress, LogLevel::info, title});

@@ -60,10 +60,15 @@ class Context {
     send(LogLevel::trace, format, fmt::make_format_args(args...));
   }
 
+  // A sink for the Context of a part of the work: its lines and titles begin with `prefix`. This
+  // Context must exist as long as the sink.
+  EventSink with_prefix(std::string prefix) const;
+
   // Begins a stage, and returns the sink for its progress. The Context must exist as long as the
   // sink.
   ProgressSink stage(const std::string& title) const;
 
+  const std::stop_token& stop_token() const { return stop_; }
   bool stop_requested() const { return stop_.stop_requested(); }
   // Throws Stopped after a request to stop.
   void check_stop() const;

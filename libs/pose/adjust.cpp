@@ -30,9 +30,11 @@ constexpr double kLeastRelativeGain = 1e-8;
 // tells nothing about the distance to the minimum.
 class Iterations : public ceres::IterationCallback {
  public:
-  Iterations(const AdjustSink& sink, double least_gain) : sink_(sink), least_gain_(least_gain) {}
+  Iterations(const AdjustSink& sink, const Context& context, double least_gain)
+      : sink_(sink), context_(context), least_gain_(least_gain) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
+    if (context_.stop_requested()) return ceres::SOLVER_ABORT;
     if (sink_) sink_({iteration.iteration, iteration.cost, iteration.iteration_time_in_seconds});
     return iteration.iteration > 0 && has_arrived(iteration) ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
                                                              : ceres::SOLVER_CONTINUE;
@@ -49,6 +51,7 @@ class Iterations : public ceres::IterationCallback {
   }
 
   const AdjustSink& sink_;
+  const Context& context_;
   double least_gain_;
 };
 
@@ -102,16 +105,18 @@ double AdjustOptions::sigma_before(const BundleCamera& camera, int number) const
   return stated > 0 ? stated : of_camera.default_sigma[k];
 }
 
-AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSink& sink) {
+AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSink& sink,
+                    const Context& context) {
   AdjustProblem adjusted(bundle, options);
   ceres::Solver::Options solver = solver_options(adjusted, options.max_iterations);
   const bool many = !options.poses_known && adjusted.pose_count() >= options.many_images;
   if (many) solver.initial_trust_region_radius = kLongSteps;
-  Iterations iterations(sink, many ? options.least_gain : 0);
+  Iterations iterations(sink, context, many ? options.least_gain : 0);
   solver.callbacks.push_back(&iterations);
   ceres::Solver::Summary summary;
   FLAGS_minloglevel = google::GLOG_FATAL;  // the Error below states a failure in one line
   ceres::Solve(solver, &adjusted.problem(), &summary);
+  context.check_stop();
   if (!summary.IsSolutionUsable()) fail("bundle adjustment: {}", summary.message);
   adjusted.write_back(bundle);
   return {has_converged(summary), static_cast<int>(summary.iterations.size()), summary.initial_cost,

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/context.h"
 #include "pose/bundle.h"
 
 namespace axial::pose {
@@ -128,8 +129,9 @@ struct AdjustReport {
 // Throws an Error if a number of a port is free for a camera in air, if a known length, a standard
 // deviation of known values or `pixel_sigma` is not positive, if a known distance names a point
 // that the bundle does not have, if the bundle has no observations, or if the solver fails. After
-// an Error, the bundle is unchanged. Precondition: all indices are in their range.
-AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSink& sink = {});
+// an Error, or after a stop, the bundle is unchanged. Precondition: all indices are in their range.
+AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSink& sink = {},
+                    const Context& context = {});
 
 // Estimates the standard deviation of the observations [px] from their reprojection errors. Let N
 // be the number of observations, S the sum of their squared errors, each divided by
@@ -164,9 +166,10 @@ struct Uncertainty {
 // Returns the first-order standard deviations of the result of adjust(), from the normal equations
 // with the points eliminated. Precondition: adjust() was called for `bundle` with the same
 // `options`. The observations are weighted with their observed standard deviation and not with
-// `options.pixel_sigma`. `progress` gets one line of text at the start of each part of the work.
+// `options.pixel_sigma`. With AdjustOptions::many_images or more images, `context` hears the start
+// of each part of the work.
 Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options,
-                        const std::function<void(const std::string&)>& progress = {});
+                        const Context& context = {});
 
 // Free numbers of cameras, and their covariance in the units of housing_change.h.
 struct NumbersCovariance {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <limits>
 
 #include "base/error.h"
@@ -80,21 +81,32 @@ double best_scale(const Bundle& bundle) {
 // Adjusts bundles and tells the progress.
 class Adjuster {
  public:
-  Adjuster(const TextSink& progress, const TextSink& iterations)
-      : progress_(progress), iterations_(iterations) {}
+  explicit Adjuster(const Context& context) : context_(context) {}
 
   AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const std::string& title) {
     const bool is_long = !options.poses_known && bundle.images.size() >= options.many_images;
-    if (progress_ && is_long) progress_(start_line(bundle, title));
-    return pose::adjust(bundle, options, [&](const AdjustIteration& iteration) {
+    if (is_long) say(start_line(bundle, title));
+    const auto tell = [&](const AdjustIteration& iteration) {
       seconds_ = iteration.seconds;
-      if (iterations_)
-        iterations_(fmt::format("{}: iteration {}, cost {:.8g}, {:.1f} s", title, iteration.number,
-                                iteration.cost, iteration.seconds));
-    });
+      const std::string line = fmt::format("{}: iteration {}, cost {:.8g}, {:.1f} s", title,
+                                           iteration.number, iteration.cost, iteration.seconds);
+      // Small models do not fill the log.
+      if (Clock::now() - last_ >= std::chrono::seconds(2))
+        say(line);
+      else
+        context_.details("{}", line);
+    };
+    return pose::adjust(bundle, options, tell, context_);
+  }
+
+  void say(const std::string& line) {
+    last_ = Clock::now();
+    context_.info("{}", line);
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   std::string start_line(const Bundle& bundle, const std::string& title) const {
     std::string line = fmt::format("{}: starts with {} images and {} points", title,
                                    bundle.images.size(), bundle.points.size());
@@ -102,9 +114,9 @@ class Adjuster {
     return line;
   }
 
-  const TextSink& progress_;
-  const TextSink& iterations_;
-  double seconds_ = 0;  // time of the last iteration; 0: there was none
+  const Context& context_;
+  Clock::time_point last_ = Clock::now();  // of a line that is no detail
+  double seconds_ = 0;                     // time of the last iteration; 0: there was none
 };
 
 // Judges the known positions before an adjustment.
@@ -143,8 +155,7 @@ void bring_to_metres(Bundle& bundle, const AdjustOptions& options) {
   triangulate(bundle);
 }
 
-RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink& progress,
-                    const TextSink& iterations) {
+RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context& context) {
   RefineReport report;
   report.observations_before = bundle.observations.size();
   report.points_before = bundle.points.size();
@@ -158,7 +169,7 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink
   limits.max_error *= 4;
   adjusting.loss_sigmas *= 4;
   adjusting.least_gain = std::max(adjusting.least_gain, kGainOfRounds);
-  Adjuster adjuster(progress, iterations);
+  Adjuster adjuster(context);
   for (int round = 0; round < options.rounds; ++round) {
     judge(bundle, kLooseness, adjusting, report);
     report.last = adjuster.adjust(bundle, adjusting, fmt::format("round {}", round + 1));
@@ -168,10 +179,9 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink
     if (bundle.observations.empty()) fail("no observation fits refractive cameras");
     report.lost = lost_knowledge(bundle, adjusting);
     if (!report.lost.empty()) return report;
-    if (progress)
-      progress(fmt::format("round {}: {} iterations, RMS {:.3f} px, {} observations dropped",
-                           round + 1, report.last.iterations,
-                           root_mean_square(reprojection_errors(bundle)), dropped));
+    adjuster.say(fmt::format("round {}: {} iterations, RMS {:.3f} px, {} observations dropped",
+                             round + 1, report.last.iterations,
+                             root_mean_square(reprojection_errors(bundle)), dropped));
     limits = options.tracks;
     adjusting.loss_sigmas = options.adjust.loss_sigmas;
     weigh_by_size(bundle);

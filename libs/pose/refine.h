@@ -2,7 +2,6 @@
 // Turns the poses that a pinhole engine found in underwater photographs into refractive poses.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,9 +10,6 @@
 #include "pose/tracks.h"
 
 namespace axial::pose {
-
-// Receives lines of text.
-using TextSink = std::function<void(const std::string&)>;
 
 struct RefineOptions {
   AdjustOptions adjust;
@@ -68,11 +64,12 @@ void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 // `options.adjust.loss_sigmas` and `options.tracks.max_error`. Later rounds use the limits
 // themselves, and observed_pixel_sigma() of the round before. After
 // each round, observations are weighed by the sizes of their features (weigh_by_size()). The first
-// round also drops repeated observations (drop_repeated()). `progress` gets one line of text for
-// each round, and `iterations` one line for each iteration of the solver. With
-// AdjustOptions::many_images or more poses, `progress` also gets a line at the start of each
-// adjustment, and the rounds before the last adjustment end at an AdjustOptions::least_gain of 0.1
-// or of `options.adjust` if that is larger: this is enough to find observations that do not fit.
+// round also drops repeated observations (drop_repeated()). `context` hears a line for each
+// round, and for an iteration of the solver if the last line is two seconds old (the lines of other
+// iterations are details). With AdjustOptions::many_images or more poses, it also hears the start
+// of each adjustment, and the rounds before the last adjustment end at an AdjustOptions::least_gain
+// of 0.1 or of `options.adjust` if that is larger: this is enough to find observations that do not
+// fit.
 //
 // Known positions are judged (judge_positions() in position_sigma.h) at the start and after each
 // round: positions that do not fit are left out, and the standard deviation of positions with
@@ -83,8 +80,7 @@ void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 // For the standard deviations of the result, call uncertainty() with the refined bundle and
 // `options.adjust`, but with the positions of the report. Throws an Error if no observation is
 // left, or if adjust() fails.
-RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink& progress = {},
-                    const TextSink& iterations = {});
+RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context& context = {});
 
 // Multiplies the coordinates of all camera centres and points by `scale`.
 void scale_places(Bundle& bundle, double scale);

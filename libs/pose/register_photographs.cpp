@@ -32,7 +32,7 @@ class Registration {
     limits_.least_sightings = options.tracks.min_observations;
   }
 
-  RegisterReport run(const TextSink& progress);
+  RegisterReport run(const Context& context);
 
  private:
   std::size_t place_images();
@@ -125,7 +125,7 @@ RegisterReport Registration::report() const {
   return report;
 }
 
-RegisterReport Registration::run(const TextSink& progress) {
+RegisterReport Registration::run(const Context& context) {
   complete();
   std::size_t grown = 0;  // images since the last adjustment
   while (true) {
@@ -134,8 +134,8 @@ RegisterReport Registration::run(const TextSink& progress) {
     if (placed > 0) complete();
     grown += placed;
     if (placed > 0 && grown * 10 < posed_count()) continue;
-    const std::string line = adjust_all();
-    if (progress) progress(line);
+    context.info("{}", adjust_all());
+    context.check_stop();
     grown = 0;
   }
   complete();
@@ -145,8 +145,8 @@ RegisterReport Registration::run(const TextSink& progress) {
 }  // namespace
 
 RegisterReport register_photographs(Bundle& bundle, const FeatureMatches& matches,
-                                    const RegisterOptions& options, const TextSink& progress) {
-  return Registration(bundle, matches, options).run(progress);
+                                    const RegisterOptions& options, const Context& context) {
+  return Registration(bundle, matches, options).run(context);
 }
 
 }  // namespace axial::pose

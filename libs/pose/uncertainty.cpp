@@ -147,8 +147,7 @@ AdjustOptions with_fixed_numbers(const Bundle& bundle, const AdjustOptions& opti
 // points. The numbers that were measured and stay fixed have columns of their own.
 class Normal {
  public:
-  Normal(const Bundle& bundle, const AdjustOptions& options,
-         const std::function<void(const std::string&)>& progress)
+  Normal(const Bundle& bundle, const AdjustOptions& options, const Context& context)
       : all_(with_fixed_numbers(bundle, options)),
         problem_(bundle, all_),
         bundle_(bundle),
@@ -162,7 +161,7 @@ class Normal {
     for (double* block : problem_.point_blocks()) blocks.push_back(block);
     select_columns(columns);
     if (unknowns_ == 0) return;
-    if (progress) progress("standard deviations: normal equations");
+    if (is_long()) context.info("standard deviations: normal equations");
     Sparse normal = reduced_normal_matrix(jacobian(problem_.problem(), blocks), columns);
     if (!fixed_.empty()) {
       const Sparse chosen = selection(columns);
@@ -170,9 +169,9 @@ class Normal {
       normal = chosen.transpose() * Sparse(normal * chosen);
     }
     covariance_.emplace(normal, [&](double operations) {
-      if (progress)
-        progress(fmt::format("standard deviations: factorization of {} equations, about {:.0f} s",
-                             unknowns_, std::ceil(operations / kOperationsPerSecond)));
+      if (is_long())
+        context.info("standard deviations: factorization of {} equations, about {:.0f} s",
+                     unknowns_, std::ceil(operations / kOperationsPerSecond));
     });
   }
 
@@ -300,6 +299,9 @@ class Normal {
                                     std::count(free.begin(), free.begin() + number, true));
   }
 
+  // With fewer images, the parts of the work take less than a second.
+  bool is_long() const { return bundle_.images.size() >= options_.many_images; }
+
   // Finds the columns of fixed numbers, and gives the others the numbers of the unknowns.
   void select_columns(Eigen::Index columns) {
     unknown_of_column_.assign(static_cast<std::size_t>(columns), 0);
@@ -375,11 +377,11 @@ NumbersCovariance covariance_of_numbers(const Bundle& bundle, const AdjustOption
 }
 
 Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options,
-                        const std::function<void(const std::string&)>& progress) {
+                        const Context& context) {
   Uncertainty result;
   const AdjustOptions weighed = weighed_by_residuals(bundle, options);
   result.pixel_sigma = weighed.pixel_sigma;
-  Normal normal(bundle, weighed, progress);
+  Normal normal(bundle, weighed, context);
   for (std::size_t camera = 0; camera < bundle.cameras.size(); ++camera)
     result.camera_sigmas.push_back(normal.sigmas_of_camera(camera));
   if (options.poses_known) return result;

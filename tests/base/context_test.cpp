@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "base/console.h"
@@ -33,6 +34,15 @@ TEST(Context, SendsLinesAndProgressInTheirOrder) {
   EXPECT_EQ(events[3].level, LogLevel::warning);
   EXPECT_EQ(events[3].text, "two lines");
   EXPECT_EQ(events[4].level, LogLevel::trace);
+}
+
+TEST(Context, PrefixesTheEventsOfAPart) {
+  std::vector<std::string> texts;
+  const Context whole([&](const Event& event) { texts.push_back(event.text); });
+  const Context part(whole.with_prefix("Registering: "), whole.stop_token());
+  part.info("round {}", 1);
+  part.stage("Matched");
+  EXPECT_EQ(texts, (std::vector<std::string>{"Registering: round 1", "Registering: Matched"}));
 }
 
 TEST(Context, WithoutASinkIsSilentAndCannotBeStopped) {

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <random>
+#include <stop_token>
 
 #include "pose/survey.h"
 
@@ -274,9 +275,10 @@ TEST(Refine, DropsAndFindsTheSameInManyImages) {
 TEST(Refine, TellsTheIterationsOfEachRound) {
   Bundle bundle = survey(camera_behind(flat_port()), {.noise = 0.3});
   std::vector<std::string> rounds, iterations;
-  refine(
-      bundle, {}, [&](const std::string& line) { rounds.push_back(line); },
-      [&](const std::string& line) { iterations.push_back(line); });
+  const Context context([&](const Event& event) {
+    (event.level == LogLevel::trace ? iterations : rounds).push_back(event.text);
+  });
+  refine(bundle, {}, context);
   EXPECT_EQ(rounds.size(), 3u);
   for (const char* start : {"round 1: iteration 0, cost ", "round 1: iteration 1, cost ",
                             "round 3: iteration 0, cost ", "last adjustment: iteration 0, cost "})
@@ -286,6 +288,19 @@ TEST(Refine, TellsTheIterationsOfEachRound) {
         << start;
 }
 
+TEST(Refine, StopsInAnAdjustment) {
+  Bundle bundle = survey(camera_behind(flat_port()), {.noise = 0.3});
+  std::stop_source source;
+  std::size_t lines = 0;
+  const Context context(
+      [&](const Event&) {
+        if (++lines == 3) source.request_stop();
+      },
+      source.get_token());
+  EXPECT_THROW(refine(bundle, {}, context), Stopped);
+  EXPECT_EQ(lines, 3u);
+}
+
 TEST(Refine, TellsTheStartOfEachAdjustmentOfManyImages) {
   const Bundle start = survey(camera_behind(flat_port()), {.noise = 0.3});
   for (const std::size_t many : {start.images.size(), start.images.size() + 1}) {
@@ -293,7 +308,8 @@ TEST(Refine, TellsTheStartOfEachAdjustmentOfManyImages) {
     RefineOptions options;
     options.adjust.many_images = many;
     std::vector<std::string> lines;
-    refine(bundle, options, [&](const std::string& line) { lines.push_back(line); });
+    const Context context([&](const Event& event) { lines.push_back(event.text); });
+    refine(bundle, options, context);
     for (const char* begin : {"round 1: starts with ", "round 2: starts with ",
                               "round 3: starts with ", "last adjustment: starts with "})
       EXPECT_EQ(std::ranges::count_if(
