@@ -90,11 +90,8 @@ RC_GTEST_PROP(ColmapFolder, IsReadAsColmapDoes, ()) {
   RC_ASSERT(std::ranges::count(said, '\n') == (any ? 1 : 0));
 }
 
-class ColmapFolderTest : public testing::Test {
+class ColmapFolderTest : public test::FolderTest {
  protected:
-  fs::path folder_ = test::empty_folder();
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string said_on_reading() const {
     const LogCapture log;
     read_colmap_model(folder_);
