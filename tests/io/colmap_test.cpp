@@ -16,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::error_of;
+using test::small_model;
 using testing::HasSubstr;
 
 // All camera models with their numbers of parameters, in the order of their numbers in binary
@@ -40,21 +41,6 @@ const std::vector<std::pair<std::string, std::size_t>> kModels{
     {"EUCM", 6},
     {"EQUIRECTANGULAR", 2},
 };
-
-ColmapModel small_model() {
-  ColmapModel model;
-  model.cameras = {{3, "PINHOLE", 640, 480, {500, 501.5, 320, 240}},
-                   {1, "SIMPLE_RADIAL", 64, 48, {50, 32, 24, -0.1}}};
-  Pose pose;
-  pose.rotation = Eigen::AngleAxisd(2.5, Eigen::Vector3d(1, -2, 3).normalized()).matrix();
-  pose.centre = {1, 2, 3};
-  model.images = {{7, 3, "left/a b.jpg", pose, {{1.5, 2.5, 100}, {3, 4, kNoPoint3D}}},
-                  {2, 1, "c.jpg", {}, {}},
-                  {4, 1, "d.jpg", {}, {{0.1, 0.2, 100}}}};
-  model.points = {{100, {0.1, -2, 3e10}, {1, 128, 255}, 0.7, {{7, 0}, {4, 0}}},
-                  {5, {1, 2, 3}, {0, 0, 0}, -1, {}}};
-  return model;
-}
 
 class ColmapTest : public test::FolderTest {
  protected:

@@ -1,14 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compares COLMAP models in tests.
+// A COLMAP model for tests, and comparisons of such models.
 #pragma once
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "io/colmap/colmap.h"
 
 namespace axial::test {
+
+inline io::ColmapModel small_model() {
+  io::ColmapModel model;
+  model.cameras = {{3, "PINHOLE", 640, 480, {500, 501.5, 320, 240}},
+                   {1, "SIMPLE_RADIAL", 64, 48, {50, 32, 24, -0.1}}};
+  Pose pose;
+  pose.rotation = Eigen::AngleAxisd(2.5, Eigen::Vector3d(1, -2, 3).normalized()).matrix();
+  pose.centre = {1, 2, 3};
+  model.images = {{7, 3, "left/a b.jpg", pose, {{1.5, 2.5, 100}, {3, 4, io::kNoPoint3D}}},
+                  {2, 1, "c.jpg", {}, {}},
+                  {4, 1, "d.jpg", {}, {{0.1, 0.2, 100}}}};
+  model.points = {{100, {0.1, -2, 3e10}, {1, 128, 255}, 0.7, {{7, 0}, {4, 0}}},
+                  {5, {1, 2, 3}, {0, 0, 0}, -1, {}}};
+  return model;
+}
 
 inline void expect_same(const std::vector<io::ColmapCamera>& a,
                         const std::vector<io::ColmapCamera>& b) {
