@@ -15,7 +15,6 @@
 #include "compare/write_changes.h"
 #include "geometry/seen_part.h"
 #include "io/cameras/geo_offset.h"
-#include "io/openmvs/mesh_of_scene.h"
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
 #include "io/ply/ply.h"

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "evaluate/report.h"
-#include "io/ply/ply_property.h"
+#include "io/ply/ply.h"
 
 namespace axial::apps {
 namespace {

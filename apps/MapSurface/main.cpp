@@ -16,7 +16,6 @@
 #include "base/parallel.h"
 #include "belong/surface_check.h"
 #include "geometry/seen_part.h"
-#include "io/openmvs/mesh_of_scene.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
 #include "map/height_error.h"

@@ -11,7 +11,6 @@
 #include "io/colmap/colmap.h"
 #include "io/images/image.h"
 #include "io/ply/ply.h"
-#include "io/ply/ply_property.h"
 
 namespace axial::apps {
 namespace {

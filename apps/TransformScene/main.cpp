@@ -25,7 +25,6 @@
 #include "find_move.h"
 #include "image_scaling.h"
 #include "io/cameras/geo_offset.h"
-#include "io/cameras/moved_housing.h"
 #include "io/openmvs/mvs.h"
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"

@@ -19,7 +19,6 @@
 #include "folder.h"
 #include "geometry/seen_part.h"
 #include "io/images/image.h"
-#include "io/openmvs/mesh_of_scene.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
 #include "maps.h"

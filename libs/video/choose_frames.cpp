@@ -65,6 +65,17 @@ class Part {
 
 }  // namespace
 
+Motion then(const Motion& first, const Motion& second) {
+  return {second.turn * first.turn, second.turn * first.shift + second.shift};
+}
+
+// The displacement of z is (turn - 1) z + shift. The mean of z over the picture is 0, and the mean
+// of |z|^2 is (1 + aspect^2) / 12.
+double displacement(const Motion& motion, double aspect) {
+  const double mean_square = (1 + aspect * aspect) / 12;
+  return std::sqrt(std::norm(motion.turn - 1.0) * mean_square + std::norm(motion.shift));
+}
+
 std::vector<std::size_t> choose_frames(std::span<const FrameMeasure> frames,
                                        const ChoiceRules& rules) {
   const std::vector<double> sharpness = relative_sharpness(frames, rules.frames_per_second);

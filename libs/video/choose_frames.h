@@ -3,14 +3,27 @@
 // them.
 #pragma once
 
+#include <complex>
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "video/motion.h"
-
 namespace axial::video {
+
+// A similarity between two frames. The point z of the first frame is at turn * z + shift in the
+// second frame. Points are complex numbers (right, down), measured from the centre of the picture
+// in widths of the picture.
+struct Motion {
+  std::complex<double> turn = 1, shift = 0;
+};
+
+// The motion `first` followed by the motion `second`.
+Motion then(const Motion& first, const Motion& second);
+
+// The root mean square of the displacements of all points of the picture, in widths of the picture.
+// `aspect`: height of the picture divided by its width.
+double displacement(const Motion& motion, double aspect);
 
 // What is measured in each frame.
 struct FrameMeasure {
@@ -28,7 +41,7 @@ struct ChoiceRules {
 };
 
 // Returns the numbers of the chosen frames, ascending. `frames`: all frames of the clip in
-// sequence. From one chosen frame to the next, the picture moves (displacement() in motion.h) by
+// sequence. From one chosen frame to the next, the picture moves (displacement()) by
 // 0.75 to 1.25 times `share`. Of all frames in this range, the one is chosen that is sharpest
 // beside its neighbours: sharpness divided by the median sharpness of the frames within a quarter
 // of a second. If the picture leaps over the range from one frame to the next, the frame after the

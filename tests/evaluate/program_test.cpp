@@ -12,7 +12,7 @@
 #include "io/cameras/housing.h"
 #include "io/images/image.h"
 #include "io/openmvs/dmap.h"
-#include "io/ply/ply_property.h"
+#include "io/ply/ply.h"
 
 namespace axial::evaluate {
 namespace {

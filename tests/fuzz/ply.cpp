@@ -9,7 +9,6 @@
 #include "base/base64.h"
 #include "io/gltf_builder.h"
 #include "io/openmvs/point_source.h"
-#include "io/ply/ply_property.h"
 #include "io/ply/ply_transform.h"
 #include "io/textured/textured_mesh.h"
 #include "reader.h"

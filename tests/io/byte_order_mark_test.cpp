@@ -18,11 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class ByteOrderMark : public testing::Test {
+class ByteOrderMark : public test::FolderTest {
  protected:
-  fs::path folder_ = test::empty_folder();
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path marked(const std::string& name, const std::string& text) const {
     test::put(folder_ / name, "\xEF\xBB\xBF" + text);
     return folder_ / name;

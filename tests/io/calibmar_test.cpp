@@ -6,8 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "io/cameras/housing.h"
-#include "support/empty_folder.h"
-#include "support/error_of.h"
+#include "io/wrong_input.h"
 
 namespace axial::io {
 namespace {
@@ -16,10 +15,8 @@ namespace fs = std::filesystem;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-class Calibmar : public ::testing::Test {
+class Calibmar : public test::FolderTest {
  protected:
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path written(const std::string& text) const {
     write_atomically(folder_ / "calibration.yaml", text);
     return folder_ / "calibration.yaml";
@@ -28,8 +25,6 @@ class Calibmar : public ::testing::Test {
   std::string error_of(const std::string& text) const {
     return test::error_of([&] { read_calibmar(written(text)); });
   }
-
-  fs::path folder_ = test::empty_folder();
 };
 
 const std::string kFlat =
@@ -141,8 +136,7 @@ TEST_F(Calibmar, WrongFilesAreNamed) {
   EXPECT_THAT(error_of(kFlat + "width: 3\n"), HasSubstr("line 8: key 'width' occurs twice"));
   EXPECT_THAT(error_of(kFlat.substr(0, kFlat.find(", 540"))), HasSubstr("truncated"));
   const auto with = [](const std::string& old, const std::string& now) {
-    std::string text = kFlat;
-    return text.replace(text.find(old), old.size(), now);
+    return test::replaced(kFlat, old, now);
   };
   EXPECT_THAT(error_of(with("FLATPORT", "PORTHOLE")), HasSubstr("'PORTHOLE' is not FLATPORT"));
   EXPECT_THAT(error_of("model: PINHOLE\nparameters: [9, 9, 4, 3]\nwidth: 8\nheight: 6\n"

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "io/same_colmap.h"
 #include "io/wrong_input.h"
 #include "support/colmap_database_file.h"
 
@@ -29,13 +30,9 @@ ColmapDatabase small_database() {
   return database;
 }
 
-class ColmapDatabaseTest : public testing::Test {
+class ColmapDatabaseTest : public test::FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = test::empty_folder();
-    test::write_database(file_(), small_database());
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { test::write_database(file_(), small_database()); }
 
   fs::path file_() const { return folder_ / "data base#1%.db"; }
   std::string error() const {
@@ -47,30 +44,16 @@ class ColmapDatabaseTest : public testing::Test {
     DatabaseFile(file_()).run(command);
     return error();
   }
-
-  fs::path folder_;
 };
 
 void expect_same(const ColmapDatabase& a, const ColmapDatabase& b) {
-  ASSERT_EQ(a.cameras.size(), b.cameras.size());
-  for (std::size_t i = 0; i < a.cameras.size(); ++i) {
-    EXPECT_EQ(a.cameras[i].id, b.cameras[i].id);
-    EXPECT_EQ(a.cameras[i].model, b.cameras[i].model);
-    EXPECT_EQ(a.cameras[i].width, b.cameras[i].width);
-    EXPECT_EQ(a.cameras[i].height, b.cameras[i].height);
-    EXPECT_EQ(a.cameras[i].params, b.cameras[i].params);
-  }
+  test::expect_same(a.cameras, b.cameras);
   ASSERT_EQ(a.images.size(), b.images.size());
   for (std::size_t i = 0; i < a.images.size(); ++i) {
     EXPECT_EQ(a.images[i].id, b.images[i].id);
     EXPECT_EQ(a.images[i].camera, b.images[i].camera);
     EXPECT_EQ(a.images[i].name, b.images[i].name);
-    ASSERT_EQ(a.images[i].features.size(), b.images[i].features.size());
-    for (std::size_t k = 0; k < a.images[i].features.size(); ++k) {
-      EXPECT_EQ(a.images[i].features[k].x, b.images[i].features[k].x);
-      EXPECT_EQ(a.images[i].features[k].y, b.images[i].features[k].y);
-      EXPECT_EQ(a.images[i].features[k].point3d, kNoPoint3D);
-    }
+    test::expect_same(a.images[i].features, b.images[i].features);
   }
   ASSERT_EQ(a.pairs.size(), b.pairs.size());
   for (std::size_t i = 0; i < a.pairs.size(); ++i) {

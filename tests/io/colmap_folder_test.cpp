@@ -9,6 +9,7 @@
 #include "base/atomic_file.h"
 #include "base/log.h"
 #include "io/colmap/colmap.h"
+#include "io/same_colmap.h"
 #include "io/wrong_input.h"
 
 namespace axial::io {
@@ -20,18 +21,10 @@ using testing::HasSubstr;
 
 constexpr std::array<const char*, 3> kParts{"cameras", "images", "points3D"};
 
+// Far from the origin, where centres have few digits behind the point.
 ColmapModel small_model() {
-  ColmapModel model;
-  model.cameras = {{3, "PINHOLE", 640, 480, {500, 501.5, 320, 240}},
-                   {1, "SIMPLE_RADIAL", 64, 48, {50, 32, 24, -0.1}}};
-  model.images = {{7, 3, "a b.jpg", {}, {{1.5, 2.5, 100}, {3, 4, kNoPoint3D}}},
-                  {2, 1, "c.jpg", {}, {{0.1, 0.2, 100}}}};
-  for (ColmapImage& image : model.images) {
-    image.pose.rotation.setIdentity();
-    image.pose.centre = {534000.125, 3378500.5, 30};
-  }
-  model.points = {{100, {0.1, -2, 3e10}, {1, 128, 255}, 0.7, {{7, 0}, {2, 0}}},
-                  {5, {1, 2, 3}, {0, 0, 0}, -1, {}}};
+  ColmapModel model = test::small_model();
+  for (ColmapImage& image : model.images) image.pose.centre = {534000.125, 3378500.5, 30};
   return model;
 }
 
@@ -90,11 +83,8 @@ RC_GTEST_PROP(ColmapFolder, IsReadAsColmapDoes, ()) {
   RC_ASSERT(std::ranges::count(said, '\n') == (any ? 1 : 0));
 }
 
-class ColmapFolderTest : public testing::Test {
+class ColmapFolderTest : public test::FolderTest {
  protected:
-  fs::path folder_ = test::empty_folder();
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string said_on_reading() const {
     const LogCapture log;
     read_colmap_model(folder_);

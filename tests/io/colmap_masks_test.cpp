@@ -21,10 +21,9 @@ using testing::HasSubstr;
 
 constexpr int kColumns = 40, kRows = 30;
 
-class ColmapMasksTest : public testing::Test {
+class ColmapMasksTest : public test::FolderTest {
  protected:
   void SetUp() override {
-    folder_ = test::empty_folder();
     for (const char* name : {"a.jpg", "dive/b.png"}) {
       fs::create_directories((image(name)).parent_path());
       write_png(image(name), cv::Mat3b(kRows, kColumns, cv::Vec3b(9, 9, 9)));
@@ -33,7 +32,6 @@ class ColmapMasksTest : public testing::Test {
     masks_ = {folder_ / "images", folder_ / "masks", 0, folder_ / "out"};
     fs::create_directories(masks_.masks / "dive");
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   fs::path image(const std::string& name) const { return folder_ / "images" / name; }
 
@@ -53,7 +51,6 @@ class ColmapMasksTest : public testing::Test {
     EXPECT_EQ(read_image_header(file).bits, 8);
   }
 
-  fs::path folder_;
   ColmapMasks masks_;
 };
 

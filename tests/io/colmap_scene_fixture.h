@@ -23,10 +23,9 @@ inline cv::Vec3d color_at(double x, double y) {
   return {128 + 100 * std::sin(x * 0.07), 128 + 100 * std::cos(y * 0.05), 40 + x * 0.5 + y * 0.5};
 }
 
-class ColmapScene : public ::testing::Test {
+class ColmapScene : public test::FolderTest {
  protected:
   void SetUp() override {
-    folder_ = test::empty_folder();
     std::filesystem::create_directories(folder_ / "images");
     import_ = {folder_ / "sparse", folder_ / "images", folder_ / "out" / "undistorted"};
     model_.cameras = {{5, "PINHOLE", kWidth, kHeight, {150, 151, 80, 60}},
@@ -36,7 +35,6 @@ class ColmapScene : public ::testing::Test {
     add_image(3, 9, "c.png");
     model_.points.push_back({1, {1, 2, 3}, {10, 20, 30}, 0.5, {{3, 0}, {4, 0}, {2, 0}, {3, 1}}});
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   void add_image(std::uint32_t id, std::uint32_t camera, const std::string& name) {
     ColmapImage image;
@@ -60,7 +58,6 @@ class ColmapScene : public ::testing::Test {
     return "no error";
   }
 
-  std::filesystem::path folder_;
   ColmapModel model_;
   ColmapImport import_;
 };

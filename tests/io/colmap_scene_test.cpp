@@ -7,10 +7,10 @@
 #include <random>
 #include <set>
 
-#include "base/error.h"
 #include "base/log.h"
 #include "io/colmap_scene_fixture.h"
 #include "io/images/image.h"
+#include "support/error_of.h"
 
 namespace axial::io {
 namespace {
@@ -198,12 +198,8 @@ TEST_F(ColmapScene, ImagesThatNamesCannotTellApartAreRefused) {
   housing.ports["main"] = {};
   housing.images = {{"wet/0000.png", "main"}};
   const Scene scene = import_colmap_scene(model_, import_);
-  try {
-    housing_by_image(housing, model_, scene, import_);
-    ADD_FAILURE() << "no error";
-  } catch (const Error& caught) {
-    EXPECT_THAT(caught.what(), HasSubstr("wet/0000.png: its port is 'none', but"));
-  }
+  EXPECT_THAT(test::error_of([&] { housing_by_image(housing, model_, scene, import_); }),
+              HasSubstr("wet/0000.png: its port is 'none', but"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "base/atomic_file.h"
+#include "io/same_colmap.h"
 #include "io/wrong_input.h"
 
 namespace axial::io {
@@ -15,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::error_of;
+using test::small_model;
 using testing::HasSubstr;
 
 // All camera models with their numbers of parameters, in the order of their numbers in binary
@@ -40,64 +42,8 @@ const std::vector<std::pair<std::string, std::size_t>> kModels{
     {"EQUIRECTANGULAR", 2},
 };
 
-ColmapModel small_model() {
-  ColmapModel model;
-  model.cameras = {{3, "PINHOLE", 640, 480, {500, 501.5, 320, 240}},
-                   {1, "SIMPLE_RADIAL", 64, 48, {50, 32, 24, -0.1}}};
-  Pose pose;
-  pose.rotation = Eigen::AngleAxisd(2.5, Eigen::Vector3d(1, -2, 3).normalized()).matrix();
-  pose.centre = {1, 2, 3};
-  model.images = {{7, 3, "left/a b.jpg", pose, {{1.5, 2.5, 100}, {3, 4, kNoPoint3D}}},
-                  {2, 1, "c.jpg", {}, {}},
-                  {4, 1, "d.jpg", {}, {{0.1, 0.2, 100}}}};
-  model.points = {{100, {0.1, -2, 3e10}, {1, 128, 255}, 0.7, {{7, 0}, {4, 0}}},
-                  {5, {1, 2, 3}, {0, 0, 0}, -1, {}}};
-  return model;
-}
-
-// Poses are stored as quaternion and translation, so they are equal up to rounding.
-void expect_equal(const ColmapModel& a, const ColmapModel& b) {
-  ASSERT_EQ(a.cameras.size(), b.cameras.size());
-  for (std::size_t i = 0; i < a.cameras.size(); ++i) {
-    EXPECT_EQ(a.cameras[i].id, b.cameras[i].id);
-    EXPECT_EQ(a.cameras[i].model, b.cameras[i].model);
-    EXPECT_EQ(a.cameras[i].width, b.cameras[i].width);
-    EXPECT_EQ(a.cameras[i].height, b.cameras[i].height);
-    EXPECT_EQ(a.cameras[i].params, b.cameras[i].params);
-  }
-  ASSERT_EQ(a.images.size(), b.images.size());
-  for (std::size_t i = 0; i < a.images.size(); ++i) {
-    EXPECT_EQ(a.images[i].id, b.images[i].id);
-    EXPECT_EQ(a.images[i].camera, b.images[i].camera);
-    EXPECT_EQ(a.images[i].name, b.images[i].name);
-    EXPECT_LT((a.images[i].pose.rotation - b.images[i].pose.rotation).norm(), 1e-14);
-    EXPECT_LT((a.images[i].pose.centre - b.images[i].pose.centre).norm(), 1e-13);
-    ASSERT_EQ(a.images[i].points.size(), b.images[i].points.size());
-    for (std::size_t k = 0; k < a.images[i].points.size(); ++k) {
-      EXPECT_EQ(a.images[i].points[k].x, b.images[i].points[k].x);
-      EXPECT_EQ(a.images[i].points[k].y, b.images[i].points[k].y);
-      EXPECT_EQ(a.images[i].points[k].point3d, b.images[i].points[k].point3d);
-    }
-  }
-  ASSERT_EQ(a.points.size(), b.points.size());
-  for (std::size_t i = 0; i < a.points.size(); ++i) {
-    EXPECT_EQ(a.points[i].id, b.points[i].id);
-    EXPECT_EQ(a.points[i].position, b.points[i].position);
-    EXPECT_EQ(a.points[i].color, b.points[i].color);
-    EXPECT_EQ(a.points[i].error, b.points[i].error);
-    ASSERT_EQ(a.points[i].track.size(), b.points[i].track.size());
-    for (std::size_t k = 0; k < a.points[i].track.size(); ++k) {
-      EXPECT_EQ(a.points[i].track[k].image, b.points[i].track[k].image);
-      EXPECT_EQ(a.points[i].track[k].point2d, b.points[i].track[k].point2d);
-    }
-  }
-}
-
-class ColmapTest : public testing::Test {
+class ColmapTest : public test::FolderTest {
  protected:
-  void SetUp() override { folder_ = test::empty_folder(); }
-  void TearDown() override { fs::remove_all(folder_); }
-
   void put_text(const std::string& cameras, const std::string& images, const std::string& points) {
     test::put(folder_ / "cameras.txt", cameras);
     test::put(folder_ / "images.txt", images);
@@ -106,18 +52,16 @@ class ColmapTest : public testing::Test {
   std::string error() {
     return error_of([&] { read_colmap_model(folder_); });
   }
-
-  fs::path folder_;
 };
 
 TEST_F(ColmapTest, ReadsBackText) {
   write_colmap_text(folder_, small_model());
-  expect_equal(read_colmap_model(folder_), small_model());
+  test::expect_same(read_colmap_model(folder_), small_model());
 }
 
 TEST_F(ColmapTest, ReadsBackBinary) {
   write_colmap_binary(folder_, small_model());
-  expect_equal(read_colmap_model(folder_), small_model());
+  test::expect_same(read_colmap_model(folder_), small_model());
 }
 
 TEST_F(ColmapTest, KnowsEveryCameraModelInBothForms) {
@@ -132,10 +76,10 @@ TEST_F(ColmapTest, KnowsEveryCameraModelInBothForms) {
   EXPECT_EQ(colmap_parameter_count("METASHAPE_FISHEYE"), 10);
   EXPECT_EQ(colmap_parameter_count("PINHOLES"), -1);
   write_colmap_text(folder_, model);
-  expect_equal(read_colmap_model(folder_), model);
+  test::expect_same(read_colmap_model(folder_), model);
   for (const char* name : {"cameras.txt", "images.txt", "points3D.txt"}) fs::remove(folder_ / name);
   write_colmap_binary(folder_, model);
-  expect_equal(read_colmap_model(folder_), model);
+  test::expect_same(read_colmap_model(folder_), model);
   // In binary files the number of a model is its place in the list above.
   const std::string bytes = read_file(folder_ / "cameras.bin");
   std::size_t at = 8;
@@ -324,6 +268,48 @@ TEST_F(ColmapTest, SurvivesWrongInput) {
         [&](const fs::path&) { fails() ? fail("{}", (folder_ / name).string()) : void(); }, 8);
     test::put(folder_ / name, bytes);
   }
+}
+
+// The standard deviation of focal lengths in COLMAP's cameras.txt: a comment that COLMAP skips.
+
+class FocalSigmaTest : public test::FolderTest {
+ protected:
+  std::vector<ColmapCamera> read(const std::string& comments) {
+    test::put(file(), comments +
+                          "3 PINHOLE 640 480 500 501 320 240\n"
+                          "1 SIMPLE_RADIAL 64 48 50 32 24 -0.1\n");
+    return read_colmap_cameras(file());
+  }
+  std::string error(const std::string& comments) {
+    return test::error_of([&] { read(comments); });
+  }
+  fs::path file() const { return folder_ / "cameras.txt"; }
+};
+
+TEST_F(FocalSigmaTest, IsReadAndWritten) {
+  ColmapModel model;
+  model.cameras = read("# A list.\n#focal_sigma 1 0.002\n# focal sigma 3 is unknown\n");
+  for (int turn = 0; turn < 2; ++turn) {
+    EXPECT_EQ(model.cameras[0].focal_sigma, std::nullopt);
+    EXPECT_EQ(model.cameras[1].focal_sigma, 0.002);
+    write_colmap_text(folder_, model);
+    EXPECT_THAT(read_file(file()), HasSubstr("\n# focal_sigma 1 0.002\n"));
+    model = read_colmap_model(folder_);
+  }
+}
+
+TEST_F(FocalSigmaTest, ErrorsNameFileLineAndValue) {
+  EXPECT_THAT(error("# focal_sigma 3 -0.1\n"),
+              HasSubstr(file().string() + ": line 1: focal_sigma of camera 3 is -0.1"));
+  EXPECT_THAT(error("# focal_sigma 3 0\n"), HasSubstr("focal_sigma of camera 3 is 0, expected"));
+  EXPECT_THAT(error("\n# focal_sigma 3 1.5\n"),
+              HasSubstr("line 2: focal_sigma of camera 3 is 1.5"));
+  EXPECT_THAT(error("# focal_sigma 3\n"), HasSubstr("line 1: focal_sigma is missing"));
+  EXPECT_THAT(error("# focal_sigma 0.01\n"), HasSubstr("camera id of focal_sigma is '0.01'"));
+  EXPECT_THAT(error("# focal_sigma 3 0.01 px\n"), HasSubstr("unexpected 'px'"));
+  EXPECT_THAT(error("# focal_sigma 2 0.01\n"), HasSubstr("line 1: focal_sigma names camera 2"));
+  EXPECT_THAT(error("# focal_sigma 3 0.01\n# focal_sigma 3 0.01\n"),
+              HasSubstr("line 2: focal_sigma of camera 3 occurs twice"));
 }
 
 }  // namespace

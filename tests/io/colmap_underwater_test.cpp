@@ -48,11 +48,8 @@ std::string underwater_bytes(const std::vector<CameraBytes>& cameras) {
   return bytes;
 }
 
-class Underwater : public testing::Test {
+class Underwater : public test::FolderTest {
  protected:
-  fs::path folder_ = test::empty_folder();
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::vector<ColmapCamera> read_binary(const std::string& bytes) {
     test::put(folder_ / "cameras.bin", bytes);
     return read_colmap_cameras(folder_ / "cameras.bin");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The images and masks that the import of a COLMAP model undistorts.
+// The images and masks that the import of a COLMAP model undistorts, and the errors of a camera's
+// lens. tests/lens/lens_test.cpp compares the lenses themselves with OpenCV.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 #include "io/colmap/colmap_scene.h"
 #include "io/colmap_scene_fixture.h"
 #include "io/images/image.h"
+#include "support/error_of.h"
 
 namespace axial::io {
 namespace {
@@ -183,6 +185,24 @@ TEST_F(ColmapScene, HiddenColorsStayHiddenWhereImagesAreUndistorted) {
       EXPECT_EQ(straight.pixels.at<cv::Vec3b>(y, x), cv::Vec3b(90, 90, 90)) << x << " " << y;
     }
   EXPECT_NEAR(shown, kWidth * kHeight / 2, kWidth * kHeight / 10);
+}
+
+TEST(ColmapLens, WhatCannotBeUndistortedIsNamed) {
+  const auto message = [](const ColmapCamera& camera) {
+    return test::error_of([&] { pinhole_inside(camera, "sparse/0"); });
+  };
+  EXPECT_EQ(message({3, "EQUIRECTANGULAR", 640, 320, {640, 320}}),
+            "camera 3: model EQUIRECTANGULAR is not supported; undistort its images with COLMAP "
+            "first");
+  // COLMAP-Underwater's model, which COLMAP does not know.
+  EXPECT_EQ(message({3, "METASHAPE_FISHEYE", 640, 480, {700, 700, 320, 240, 0, 0, 0, 0, 0, 0}}),
+            "camera 3: model METASHAPE_FISHEYE is not supported; undistort its images with the "
+            "program that calibrated it first");
+  // The principal point is outside the image.
+  EXPECT_THAT(message({3, "OPENCV_FISHEYE", 640, 480, {700, 700, 900, 240, 0, 0, 0, 0}}),
+              HasSubstr("camera 3 (OPENCV_FISHEYE) cannot be undistorted"));
+  EXPECT_EQ(message({3, "OPENCV", 640, 480, {700, 700, 320, 240}}),
+            "camera 3: model OPENCV has 8 parameters, not 4");
 }
 
 }  // namespace

@@ -59,15 +59,8 @@ DepthMap depth_map(const fs::path& folder, Port port) {
   return map;
 }
 
-class DmapTest : public testing::Test {
+class DmapTest : public test::FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = test::empty_folder();
-    file_ = folder_ / "depth0004.dmap";
-    side_ = folder_ / "depth0004.dmap.json";
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string error() {
     return error_of([&] { read_dmap(file_); });
   }
@@ -80,12 +73,10 @@ class DmapTest : public testing::Test {
     std::memcpy(bytes.data() + offset, &value, sizeof value);
     test::put(file_, bytes);
     fs::remove(side_);
-    const std::string message = error();
-    EXPECT_THAT(message, HasSubstr(file_.string()));
-    return message;
+    return test::error_naming(file_, [&] { read_dmap(file_); });
   }
 
-  fs::path folder_, file_, side_;
+  fs::path file_ = folder_ / "depth0004.dmap", side_ = folder_ / "depth0004.dmap.json";
 };
 
 // Offsets of the fields in the file of depth_map(): 30 bytes, "images/a.jpg", the ids, then K, R,
@@ -243,9 +234,7 @@ TEST_F(DmapTest, RefusesASideFileOfAnotherMap) {
   write_dmap(file_, depth_map(folder_, Port::flat), "x");
   const std::string side = read_file(side_);
   const auto message = [&](const std::string& from, const std::string& to) {
-    std::string text = side;
-    EXPECT_NE(text.find(from), std::string::npos);
-    test::put(side_, text.replace(text.find(from), from.size(), to));
+    test::put(side_, test::replaced(side, from, to));
     return error();
   };
   EXPECT_THAT(message("\"width\": 9", "\"width\": 10"), HasSubstr("10x7"));

@@ -4,9 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "base/atomic_file.h"
 #include "base/log.h"
 #include "io/wrong_input.h"
+#include "scene/camera_model.h"
 
 namespace axial::io {
 namespace {
@@ -17,16 +20,9 @@ using testing::HasSubstr;
 
 const LocalFrame kFar{{534000, 3378500, -0.125}};
 
-class GeoOffset : public testing::Test {
+class GeoOffset : public test::FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = test::empty_folder();
-    scene_ = folder_ / "a.scene.mvs";
-    file_ = folder_ / "a.scene.geo.json";
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path folder_, scene_, file_;
+  fs::path scene_ = folder_ / "a.scene.mvs", file_ = folder_ / "a.scene.geo.json";
 };
 
 Scene scene_at(const Eigen::Vector3d& centre) {
@@ -133,6 +129,54 @@ TEST_F(GeoOffset, WaterSurfacesMoveWithTheirScene) {
   EXPECT_EQ(std::get<refractive::FlatPort<double>>(*in_world).distance, 1.5);
   EXPECT_EQ(std::get<refractive::FlatPort<double>>(*in_local).distance, 1.5);
   EXPECT_EQ(std::get<refractive::FlatPort<double>>(moved.ports.at("flat")).distance, 0.02);
+}
+
+// Moves cameras, housings and points together: every point keeps its pixel.
+
+Similarity turned(double scale) {
+  const Eigen::Vector3d axis = Eigen::Vector3d(1, 2, 3).normalized();
+  return {scale, Eigen::AngleAxisd(0.7, axis).toRotationMatrix(), {4, -5, 6}};
+}
+
+// The pixel of `x` behind the port of the housing.
+Eigen::Vector2d pixel(const Housing& housing, const Pose& pose, const Eigen::Vector3d& x) {
+  CameraModel model{640, 480, {500, 500, 319.5, 239.5}, housing.port_at("main", pose, "image")};
+  return std::visit(
+      [&](const auto& camera) -> Eigen::Vector2d {
+        return camera.project(pose.to_camera(x)).pixel;
+      },
+      make_camera<double>(model));
+}
+
+void expect_same_pixels(const HousingPort& port, double scale, bool scale_ports) {
+  const Housing housing = housing_with(port);
+  const Similarity similarity = turned(scale);
+  const Housing after = moved(similarity, housing, scale_ports);
+  const Pose pose;
+  for (const Eigen::Vector3d& x : {Eigen::Vector3d(0.3, -0.2, 1.5), Eigen::Vector3d(-0.5, 0, 2)})
+    EXPECT_LT((pixel(after, similarity(pose), similarity(x)) - pixel(housing, pose, x)).norm(),
+              1e-8);
+}
+
+const Eigen::Vector3d kTilt = Eigen::Vector3d(0.1, 0.05, 1).normalized();
+
+TEST(MovedHousing, RigidMotionsKeepThePorts) {
+  expect_same_pixels(refractive::FlatPort<double>{kTilt, 0.02, 0.01, 1, 1.5, 1.33}, 1, false);
+  expect_same_pixels(refractive::DomePort<double>{{0, 0.01, 0}, 0.1, 0.01, 1, 1.5, 1.33}, 1, false);
+}
+
+TEST(MovedHousing, PortsScaleWithTheScene) {
+  expect_same_pixels(refractive::FlatPort<double>{kTilt, 0.02, 0.01, 1, 1.5, 1.33}, 2.5, true);
+  expect_same_pixels(refractive::DomePort<double>{{0, 0.01, 0}, 0.1, 0.01, 1, 1.5, 1.33}, 2.5,
+                     true);
+  const Housing same =
+      moved(turned(2.5), housing_with(refractive::FlatPort<double>{kTilt, 0.02}), false);
+  EXPECT_EQ(std::get<refractive::FlatPort<double>>(same.ports.at("main")).distance, 0.02);
+}
+
+TEST(MovedHousing, WaterSurfacesMoveWithTheScene) {
+  for (const bool scale_ports : {false, true})
+    expect_same_pixels(WaterSurface{kTilt, {0.5, 0, 0.3}, 1, 1.33}, 2.5, scale_ports);
 }
 
 }  // namespace

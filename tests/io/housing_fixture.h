@@ -30,36 +30,24 @@ inline constexpr const char* kLake = R"({ "version": 1, "default": "lake", "port
   { "type": "water-surface", "normal": [0, 0, -1], "point_m": [7, 8, 1.5], "n_water": 1.34 } },
   "images": { "dry.jpg": "none" } })";
 
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
+using test::replaced;
 
 inline auto& flat(auto& port) {
   return std::get<refractive::FlatPort<double>>(port);
 }
 
-class HousingTest : public testing::Test {
+class HousingTest : public test::FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = test::empty_folder();
-    file_ = folder_ / "scene.housing.json";
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   Housing read(const std::string& text) {
     test::put(file_, text);
     return read_housing(file_);
   }
   // Returns the error of reading kExample with the text `from` replaced by `to`.
   std::string error(const std::string& from, const std::string& to) {
-    const std::string message = test::error_of([&] { read(replaced(kExample, from, to)); });
-    EXPECT_THAT(message, testing::HasSubstr(file_.string()));
-    return message;
+    return test::error_naming(file_, [&] { read(replaced(kExample, from, to)); });
   }
 
-  std::filesystem::path folder_, file_;
+  std::filesystem::path file_ = folder_ / "scene.housing.json";
 };
 
 }  // namespace axial::io

@@ -105,9 +105,7 @@ TEST_F(HousingTest, ReadsAndWritesWaterSurfaces) {
 
 TEST_F(HousingTest, NamesKeyAndValueOfWaterSurfaces) {
   const auto error = [&](const std::string& from, const std::string& to) {
-    const std::string message = error_of([&] { read(replaced(kLake, from, to)); });
-    EXPECT_THAT(message, HasSubstr(file_.string()));
-    return message;
+    return test::error_naming(file_, [&] { read(replaced(kLake, from, to)); });
   };
   EXPECT_THAT(error("[0, 0, -1]", "[0, 0, 0]"), HasSubstr("lake.normal is [0,0,0]"));
   EXPECT_THAT(error("[0, 0, -1]", "[0, 0]"), HasSubstr("lake.normal is [0,0], expected three"));

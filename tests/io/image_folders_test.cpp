@@ -16,14 +16,13 @@ using testing::ElementsAre;
 
 // A working folder `here`, and a scene in a/b/c/d/project/run. Photographs are in the folder that a
 // test names.
-class ImageFoldersTest : public testing::Test {
+class ImageFoldersTest : public test::FolderTest {
  protected:
   void SetUp() override {
-    folder_ = fs::canonical(test::empty_folder());
+    folder_ = fs::canonical(folder_);
     fs::create_directories(here());
     fs::create_directories(run());
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   fs::path here() const { return folder_ / "here"; }
   fs::path above() const { return folder_ / "a/b/c/d/project"; }
@@ -37,8 +36,6 @@ class ImageFoldersTest : public testing::Test {
   std::vector<std::string> find(const std::vector<std::string>& names) const {
     return find_files_of_scene(here(), run() / "scene.mvs", names, "images");
   }
-
-  fs::path folder_;
 };
 
 TEST_F(ImageFoldersTest, TheWorkingFolderIsFirst) {

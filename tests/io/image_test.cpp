@@ -17,12 +17,8 @@ namespace fs = std::filesystem;
 using test::error_of;
 using testing::HasSubstr;
 
-class ImageTest : public testing::Test {
+class ImageTest : public test::FolderTest {
  protected:
-  void SetUp() override { folder_ = test::empty_folder(); }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path folder_;
 };
 
 // A smooth gradient of 37x23 pixels, which JPEG hardly changes.

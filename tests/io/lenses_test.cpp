@@ -32,15 +32,8 @@ Distortion barrel() {
   return lens;
 }
 
-class LensesTest : public ::testing::Test {
+class LensesTest : public test::FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = test::empty_folder();
-    scene_file_ = folder_ / "scene.mvs";
-    file_ = folder_ / "scene.lenses.json";
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   void add(const std::string& path, std::optional<Distortion> distortion) {
     SceneImage image;
     image.path = path;
@@ -63,12 +56,10 @@ class LensesTest : public ::testing::Test {
 
   std::string error(const std::string& json) {
     test::put(file_, json);
-    const std::string message = error_of([&] { attach_lenses_beside(scene_, scene_file_); });
-    EXPECT_THAT(message, HasSubstr(file_.string()));
-    return message;
+    return test::error_naming(file_, [&] { attach_lenses_beside(scene_, scene_file_); });
   }
 
-  fs::path folder_, scene_file_, file_;
+  fs::path scene_file_ = folder_ / "scene.mvs", file_ = folder_ / "scene.lenses.json";
   Scene scene_;
 };
 
@@ -170,9 +161,7 @@ TEST_F(LensesTest, WhatIsLeftOutIsStraight) {
 TEST_F(LensesTest, NamesKeyAndValue) {
   add("b.jpg", std::nullopt);
   const auto with = [&](const std::string& from, const std::string& to) {
-    std::string json = kExample;
-    json.replace(json.find(from), from.size(), to);
-    return error(json);
+    return error(test::replaced(kExample, from, to));
   };
   EXPECT_THAT(with("\"version\": 1", "\"version\": 2"), HasSubstr("version is 2"));
   EXPECT_THAT(with("perspective", "catadioptric"), HasSubstr("main.type is 'catadioptric'"));

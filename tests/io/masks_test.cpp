@@ -19,14 +19,9 @@ namespace fs = std::filesystem;
 using test::error_of;
 using testing::HasSubstr;
 
-class MasksTest : public testing::Test {
+class MasksTest : public test::FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = test::empty_folder();
-    masks_ = folder_ / "masks";
-    fs::create_directories(masks_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { fs::create_directories(masks_); }
 
   fs::path touch(const fs::path& path) const {
     fs::create_directories(path.parent_path());
@@ -42,7 +37,7 @@ class MasksTest : public testing::Test {
     return find_masks(requests, folder);
   }
 
-  fs::path folder_, masks_;
+  fs::path masks_ = folder_ / "masks";
 };
 
 TEST_F(MasksTest, AllUsualNamesAreFoundInTheirOrder) {

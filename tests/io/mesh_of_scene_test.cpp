@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/openmvs/mesh_of_scene.h"
-
 #include <gmock/gmock.h>
 
 #include <cstdint>
@@ -19,11 +17,8 @@ using testing::HasSubstr;
 
 const LocalFrame kOffset{{534000, 3378500, 0}};
 
-class MeshOfScene : public testing::TestWithParam<const char*> {
+class MeshOfScene : public test::FolderTest, public testing::WithParamInterface<const char*> {
  protected:
-  void SetUp() override { folder_ = test::empty_folder(); }
-  void TearDown() override { fs::remove_all(folder_); }
-
   // Writes a triangle at `at`, with the offset of `frame` unless it is the world.
   fs::path written(const Eigen::Vector3f& at, const LocalFrame& frame = {}) {
     Mesh mesh;
@@ -45,8 +40,6 @@ class MeshOfScene : public testing::TestWithParam<const char*> {
     }
     return first;
   }
-
-  fs::path folder_;
 };
 
 TEST_P(MeshOfScene, LocalPositionsWithoutAnOffsetStayAsTheyAre) {

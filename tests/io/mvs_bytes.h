@@ -146,25 +146,20 @@ inline std::string bytes_of(const Description& d) {
   return b.data;
 }
 
-class MvsTest : public testing::Test {
+class MvsTest : public test::FolderTest {
  protected:
   void SetUp() override {
-    folder_ = test::empty_folder();
-    file_ = folder_ / "scene.mvs";
     std::filesystem::create_directories(folder_ / "images");
     for (const char* name : {"a.png", "b.png"})
       write_png(folder_ / "images" / name, cv::Mat3b(480, 640, cv::Vec3b(1, 2, 3)));
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   Scene read(const Description& d) {
     test::put(file_, bytes_of(d));
     return read_mvs(file_, folder_);
   }
   std::string error(const Description& d) {
-    const std::string message = test::error_of([&] { read(d); });
-    EXPECT_THAT(message, testing::HasSubstr(file_.string()));
-    return message;
+    return test::error_naming(file_, [&] { read(d); });
   }
   // Returns the error of reading a scene whose description was changed by `change`.
   std::string error(const std::function<void(Description&)>& change) {
@@ -173,7 +168,7 @@ class MvsTest : public testing::Test {
     return error(d);
   }
 
-  std::filesystem::path folder_, file_;
+  std::filesystem::path file_ = folder_ / "scene.mvs";
 };
 
 }  // namespace axial::io

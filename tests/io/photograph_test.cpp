@@ -20,12 +20,8 @@ namespace fs = std::filesystem;
 using test::error_of;
 using testing::HasSubstr;
 
-class PhotographTest : public testing::Test {
+class PhotographTest : public test::FolderTest {
  protected:
-  void SetUp() override { folder_ = test::empty_folder(); }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path folder_;
   std::mt19937 random_{11};
 };
 

@@ -14,14 +14,8 @@
 
 namespace axial::io {
 
-class PlyTest : public testing::Test {
+class PlyTest : public test::FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = test::empty_folder();
-    file_ = folder_ / "cloud.ply";
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   PointCloud cloud(std::string_view bytes) {
     test::put(file_, bytes);
     return read_cloud_ply(file_);
@@ -31,12 +25,10 @@ class PlyTest : public testing::Test {
     return read_mesh_ply(file_);
   }
   std::string error(std::string_view bytes) {
-    const std::string message = test::error_of([&] { cloud(bytes); });
-    EXPECT_THAT(message, testing::HasSubstr(file_.string()));
-    return message;
+    return test::error_naming(file_, [&] { cloud(bytes); });
   }
 
-  std::filesystem::path folder_, file_;
+  std::filesystem::path file_ = folder_ / "cloud.ply";
 };
 
 }  // namespace axial::io

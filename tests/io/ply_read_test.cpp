@@ -7,14 +7,17 @@
 #include <bit>
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "io/ply/ply.h"
 #include "io/ply_fixture.h"
+#include "support/empty_folder.h"
 
 namespace axial::io {
 namespace {
 
 namespace fs = std::filesystem;
 using test::error_of;
+using test::replaced;
 using testing::HasSubstr;
 
 // Everything that an ascii reader may meet: old and new type names, another order, unknown
@@ -143,13 +146,6 @@ TEST_F(PlyTest, MarksOfUnseenFacesAreReadAndWritten) {
   EXPECT_THAT(error_of([&] { write_mesh_ply(file_, wrong); }), HasSubstr("marks of faces"));
 }
 
-std::string replaced(std::string_view text, const std::string& from, const std::string& to) {
-  std::string result(text);
-  const std::size_t at = result.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return result.replace(at, from.size(), to);
-}
-
 TEST_F(PlyTest, NamesWhatIsWrongInAMesh) {
   const auto message = [&](const std::string& from, const std::string& to) {
     return error_of([&] { mesh(replaced(kQuad, from, to)); });
@@ -251,6 +247,37 @@ TEST_F(PlyTest, SurvivesWrongInput) {
   test::expect_damage_survived(file_, mesh_bytes, as_mesh);
   const auto has_faces = [](const fs::path& file) { ply_has_faces(file); };
   test::expect_damage_survived(file_, std::string(kQuad), has_faces);
+}
+
+const Mesh kOneFace{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {{0, 1, 2}}};
+
+TEST_F(PlyTest, VertexPropertiesGoThroughAFileAndLeaveTheMeshAsItIs) {
+  const std::vector<float> values{0.5f, 0.0f, 7.25f};
+  write_mesh_ply(file_, kOneFace, VertexProperty{"thickness", values});
+  EXPECT_EQ(read_vertex_property(file_, "thickness"), values);
+  EXPECT_TRUE(read_vertex_property(file_, "error").empty());
+  const Mesh again = read_mesh_ply(file_);
+  EXPECT_EQ(again.vertices, kOneFace.vertices);
+  EXPECT_EQ(again.faces, kOneFace.faces);
+  EXPECT_THROW(write_mesh_ply(file_, kOneFace, VertexProperty{"thickness", {}}), Error);
+}
+
+TEST_F(PlyTest, VertexPropertiesAreFoundBehindListsAndOtherElementsAndInText) {
+  write_atomically(
+      file_,
+      "ply\nformat ascii 1.0\nelement other 1\nproperty float error\nelement vertex 2\n"
+      "property float x\nproperty float y\nproperty float z\n"
+      "property list uchar uint view_indices\nproperty float error\n"
+      "end_header\n9\n0 0 0 2 4 5 0.25\n1 1 1 0 0.5\n");
+  EXPECT_EQ(read_vertex_property(file_, "error"), (std::vector<float>{0.25f, 0.5f}));
+  EXPECT_TRUE(read_vertex_property(file_, "view_indices").empty()) << "a list";
+}
+
+TEST_F(PlyTest, VertexPropertiesOfATruncatedFileAreAnError) {
+  write_mesh_ply(file_, kOneFace, VertexProperty{"thickness", std::vector<float>{1, 2, 3}});
+  const std::string bytes = read_file(file_);
+  write_atomically(file_, bytes.substr(0, bytes.find("end_header\n") + 11 + 20));
+  EXPECT_THROW(read_vertex_property(file_, "thickness"), Error);
 }
 
 }  // namespace

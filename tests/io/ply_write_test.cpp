@@ -7,7 +7,6 @@
 
 #include "base/atomic_file.h"
 #include "io/ply/ply.h"
-#include "io/ply/ply_property.h"
 #include "io/ply_fixture.h"
 
 namespace axial::io {

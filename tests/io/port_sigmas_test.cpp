@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.h"
-#include "io/cameras/moved_housing.h"
+#include "io/cameras/geo_offset.h"
 #include "io/housing_fixture.h"
 
 namespace axial::io {

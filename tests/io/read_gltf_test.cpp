@@ -24,11 +24,8 @@ using testing::HasSubstr;
 using Face = std::array<std::uint32_t, 3>;
 using V = Eigen::Vector3f;
 
-class ReadGltfTest : public testing::Test {
+class ReadGltfTest : public test::FolderTest {
  protected:
-  void SetUp() override { folder_ = test::empty_folder(); }
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path written(const std::string& bytes, const char* name = "m.glb") const {
     write_atomically(folder_ / name, bytes);
     return folder_ / name;
@@ -68,8 +65,6 @@ class ReadGltfTest : public testing::Test {
     builder.node({{"mesh", 0}});
     return builder;
   }
-
-  fs::path folder_;
 };
 
 // u and v of a corner, counted from the upper left corner of the picture of 4 x 2 pixels.

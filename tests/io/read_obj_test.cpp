@@ -20,14 +20,12 @@ using testing::HasSubstr;
 using Face = std::array<std::uint32_t, 3>;
 using V = Eigen::Vector3f;
 
-class ReadObjTest : public testing::Test {
+class ReadObjTest : public test::FolderTest {
  protected:
   void SetUp() override {
-    folder_ = test::empty_folder();
     write_png(folder_ / "t.png", cv::Mat3b(16, 32, cv::Vec3b(1, 2, 3)));
     write("m.mtl", "newmtl wall\nmap_Kd t.png\n");
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   void write(const char* name, const std::string& text) const {
     write_atomically(folder_ / name, text);
@@ -48,7 +46,6 @@ class ReadObjTest : public testing::Test {
   const std::string kPoints =
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\n";
   const std::string kStart = "mtllib m.mtl\n" + kPoints;
-  fs::path folder_;
 };
 
 // (u, v) with v from the lower edge.

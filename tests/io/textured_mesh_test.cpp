@@ -19,17 +19,11 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-class TexturedMeshTest : public testing::Test {
+class TexturedMeshTest : public test::FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = test::empty_folder();
-    path_ = folder_ / "a mesh.ply";
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string bytes(const std::string& name) const { return read_file(folder_ / name); }
 
-  fs::path folder_, path_;
+  fs::path path_ = folder_ / "a mesh.ply";
 };
 
 // Two squares of two triangles, 10 apart, each with a texture of its own or both with one.
@@ -179,10 +173,8 @@ TEST_F(TexturedMeshTest, WrongGlbIsRefused) {
   };
   // Replaces text by text of the same length.
   const auto with = [&](const std::string& from, std::string to) {
-    std::string changed = good;
     to.resize(from.size(), ' ');
-    EXPECT_NE(changed.find(from), std::string::npos) << from;
-    return changed.replace(changed.find(from), from.size(), to);
+    return test::replaced(good, from, to);
   };
   for (std::size_t size = 0; size < good.size(); size += 37)
     EXPECT_THAT(error(good.substr(0, size)), HasSubstr("wrong.glb")) << size;
@@ -203,8 +195,7 @@ TEST_F(TexturedMeshTest, WrongPlyIsRefused) {
     return test::error_of([&] { read_textured_ply(path_); });
   };
   const auto with = [&](const std::string& from, const std::string& to) {
-    std::string changed = good;
-    return changed.replace(changed.find(from), from.size(), to);
+    return test::replaced(good, from, to);
   };
   EXPECT_THAT(error(with("TextureFile a mesh0.png", "TextureFile missing.png")),
               HasSubstr("missing.png"));

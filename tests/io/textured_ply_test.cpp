@@ -17,14 +17,12 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using Face = std::array<std::uint32_t, 3>;
 
-class TexturedPlyTest : public testing::Test {
+class TexturedPlyTest : public test::FolderTest {
  protected:
   void SetUp() override {
-    folder_ = test::empty_folder();
     write_png(folder_ / "t.png", cv::Mat3b(10, 20, cv::Vec3b(1, 2, 3)));
     write_png(folder_ / "u.png", cv::Mat3b(20, 40, cv::Vec3b(4, 5, 6)));
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   // A square of two triangles or of one polygon.
   fs::path write(const std::string& comments, const std::string& vertex, const std::string& face,
@@ -41,7 +39,6 @@ class TexturedPlyTest : public testing::Test {
   }
 
   const std::vector<std::string> kSquare{"0 0 0 0 0", "1 0 0 1 0", "1 1 0 1 1", "0 1 0 0.25 0.75"};
-  fs::path folder_;
 };
 
 // u and v of 0.25 and 0.75 in a texture of 20 x 10 pixels, whose v counts from the lower edge.

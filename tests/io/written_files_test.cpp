@@ -16,11 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class WrittenFilesTest : public testing::Test {
+class WrittenFilesTest : public test::FolderTest {
  protected:
-  void SetUp() override { folder_ = test::empty_folder(); }
-  void TearDown() override { fs::remove_all(folder_); }
-
   void put(const fs::path& name, const std::string& content) const {
     make_folder((folder_ / name).parent_path());
     write_atomically(folder_ / name, content);
@@ -33,8 +30,6 @@ class WrittenFilesTest : public testing::Test {
         found[entry.path().lexically_relative(folder_).string()] = read_file(entry.path());
     return found;
   }
-
-  fs::path folder_;
 };
 
 std::set<std::string> names(const std::vector<fs::path>& files) {

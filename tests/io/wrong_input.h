@@ -25,6 +25,14 @@ inline void put(const std::filesystem::path& path, std::string_view bytes) {
   ASSERT_TRUE(out.flush()) << path;
 }
 
+// `text` with its first `from` replaced by `to`.
+inline std::string replaced(std::string_view text, const std::string& from, const std::string& to) {
+  std::string result(text);
+  const std::size_t at = result.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? result : result.replace(at, from.size(), to);
+}
+
 // True if `run` throws an Error of one line that names `file`.
 template <class Run>
 bool fails_naming(const std::filesystem::path& file, Run run) {
@@ -37,6 +45,14 @@ bool fails_naming(const std::filesystem::path& file, Run run) {
     return true;
   }
   return false;
+}
+
+// Returns the message of the Error that `run` throws, and checks that it names `file`.
+template <class Run>
+std::string error_naming(const std::filesystem::path& file, Run run) {
+  const std::string message = error_of(run);
+  EXPECT_NE(message.find(file.string()), std::string::npos) << message;
+  return message;
 }
 
 // Checks that a reader refuses the beginnings of the valid file `bytes` with a length of 0 to

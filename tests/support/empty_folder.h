@@ -22,4 +22,12 @@ inline std::filesystem::path empty_folder() {
   return folder;
 }
 
+// A test with an empty folder, which is removed after the test.
+class FolderTest : public testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path folder_ = empty_folder();
+};
+
 }  // namespace axial::test

@@ -10,7 +10,6 @@
 #include "base/file_extension.h"
 #include "private/bytes/text_reader.h"
 #include "private/colmap/colmap_parts.h"
-#include "private/colmap/colmap_port.h"
 
 namespace axial::io {
 namespace {

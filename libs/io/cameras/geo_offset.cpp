@@ -14,7 +14,6 @@
 #include "private/cameras/port_json.h"
 
 namespace axial::io {
-
 namespace fs = std::filesystem;
 
 namespace {
@@ -22,11 +21,7 @@ namespace {
 constexpr const char* kKey = "geo_offset";
 
 Eigen::Vector3d offset_from(const JsonPlace& place) {
-  const nlohmann::json& json = place.json;
-  if (!json.is_array() || json.size() != 3 ||
-      !std::ranges::all_of(json, [](const auto& number) { return number.is_number(); }))
-    fail("{} is {}, expected three numbers", place.where, to_text(json));
-  const Eigen::Vector3d offset(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
+  const Eigen::Vector3d offset = place.vector();
   if (!offset.allFinite()) fail("{} contains a number that is not finite", place.where);
   return offset;
 }
@@ -64,8 +59,7 @@ std::optional<LocalFrame> read_geo_offset_beside(const fs::path& scene_path) {
   const nlohmann::json json = read_json(file);
   const JsonPlace root{json, file.string() + ": geo"};
   root.require_object({"version", kKey});
-  if (root.at("version").json != 1)
-    fail("{}.version is {}, expected 1", root.where, to_text(root.at("version").json));
+  root.require_version_1();
   return LocalFrame{offset_from(root.at(kKey))};
 }
 
@@ -120,6 +114,34 @@ Housing in_frame(const LocalFrame& frame, Housing housing) {
   for (auto& [name, port] : housing.ports)
     if (auto* surface = std::get_if<WaterSurface>(&port))
       surface->point = frame.to_local(surface->point);
+  return housing;
+}
+
+namespace {
+
+void move(const Similarity&, double length_factor, refractive::FlatPort<double>& port) {
+  port.distance *= length_factor;
+  port.thickness *= length_factor;
+}
+
+void move(const Similarity&, double length_factor, refractive::DomePort<double>& port) {
+  port.centre *= length_factor;
+  port.inner_radius *= length_factor;
+  port.thickness *= length_factor;
+}
+
+void move(const Similarity& similarity, double, WaterSurface& surface) {
+  surface.normal = (similarity.rotation * surface.normal).normalized();
+  surface.point = similarity(surface.point);
+}
+
+}  // namespace
+
+Housing moved(const Similarity& similarity, Housing housing, bool scale_ports) {
+  const double length_factor = scale_ports ? similarity.scale : 1;
+  for (auto& [name, port] : housing.ports)
+    std::visit([&](auto& one) { move(similarity, length_factor, one); }, port);
+  for (auto& [name, sigmas] : housing.sigmas) sigmas = scaled(sigmas, length_factor);
   return housing;
 }
 

@@ -10,6 +10,7 @@
 
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
+#include "scene/decompositions.h"
 #include "scene/local_frame.h"
 
 namespace axial::io {
@@ -49,5 +50,12 @@ void leave(const LocalFrame& frame, ColmapModel& model);
 // Converts `housing` from world coordinates to `frame` and returns the result. Only water surfaces
 // change, because other ports have no position in the world.
 Housing in_frame(const LocalFrame& frame, Housing housing);
+
+// Returns the housing that fits the poses after they have been moved by `similarity`, which maps
+// world coordinates to world coordinates. `housing` is in world coordinates before and after. Water
+// surfaces are moved by `similarity`. Other ports are fixed to the camera, so that only their
+// lengths (distance, radius, thickness) can change. If `scale_ports` is true, the lengths are
+// multiplied by the scale, so that every moved point keeps its pixel. Otherwise the lengths stay.
+Housing moved(const Similarity& similarity, Housing housing, bool scale_ports);
 
 }  // namespace axial::io

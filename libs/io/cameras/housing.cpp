@@ -11,22 +11,12 @@
 #include "private/bytes/text_reader.h"
 #include "private/cameras/image_names.h"
 #include "private/cameras/port_json.h"
-#include "private/cameras/port_sigmas_json.h"
 #include "private/cameras/port_values.h"
 
 namespace axial::io {
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::string kDry = "none";
-
-std::string port_name(const JsonPlace& place, const char* key, const Housing& housing) {
-  const std::string name = place.text(key);
-  if (name != kDry && !housing.ports.contains(name))
-    fail("{}.{} is '{}', a port that is not defined", place.where, key, name);
-  return name;
-}
 
 constexpr const char* kSigma = "sigma";
 
@@ -50,29 +40,19 @@ void read_port(const std::string& name, const JsonPlace& place, Housing& housing
 }
 
 void read_ports(const JsonPlace& place, Housing& housing) {
-  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
-  for (const auto& [name, unused] : place.json.items()) {
-    if (name == kDry || name.empty())
+  for (const std::string& name : place.keys()) {
+    if (name == kNone || name.empty())
       fail("{}: '{}' cannot be the name of a port ('none' means no port)", place.where, name);
     read_port(name, place.at(name), housing);
   }
 }
 
 void read_cameras(const JsonPlace& place, Housing& housing) {
-  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
-  for (const auto& [key, unused] : place.json.items()) {
+  for (const std::string& key : place.keys()) {
     const auto id = parse_number<std::uint32_t>(key);
     if (!id) fail("{}: key '{}' is not a COLMAP camera id", place.where, key);
     if (housing.cameras.contains(*id)) fail("{}: camera {} occurs twice", place.where, *id);
-    housing.cameras[*id] = port_name(place, key.c_str(), housing);
-  }
-}
-
-void read_images(const JsonPlace& place, Housing& housing) {
-  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
-  for (const auto& [key, unused] : place.json.items()) {
-    if (key.empty()) fail("{}: an image name is empty", place.where);
-    housing.images[key] = port_name(place, key.c_str(), housing);
+    housing.cameras[*id] = defined_name(place, key, housing.ports, "port");
   }
 }
 
@@ -80,26 +60,21 @@ void attach(SceneImage& image, const std::string& name, const Housing& housing,
             const std::string& file) {
   image.camera.port.reset();
   image.port_name.clear();
-  if (name == kDry || !image.calibrated) return;
+  if (name == kNone || !image.calibrated) return;
   image.camera.port = housing.port_at(name, image.pose, file + ": " + image.path);
   image.port_name = name;
 }
 
-struct ToJson {
-  nlohmann::json operator()(const WaterSurface& surface) const {
-    return water_surface_to_json(surface);
-  }
-  nlohmann::json operator()(const refractive::Port<double>& port) const {
-    return port_to_json(port);
-  }
-};
+// Returns of_surface(port) for a water surface, of_port(port) for a port that moves with the
+// camera.
+template <class OfSurface, class OfPort>
+auto by_kind(const HousingPort& port, OfSurface of_surface, OfPort of_port) {
+  if (const auto* surface = std::get_if<WaterSurface>(&port)) return of_surface(*surface);
+  if (const auto* flat = std::get_if<refractive::FlatPort<double>>(&port)) return of_port(*flat);
+  return of_port(std::get<refractive::DomePort<double>>(port));
+}
 
-struct Check {
-  const std::string& where;
-
-  void operator()(const WaterSurface& surface) const { check_water_surface(surface, where); }
-  void operator()(const refractive::Port<double>& port) const { check_port(port, where); }
-};
+using Port = refractive::Port<double>;
 
 Housing calibmar_housing(const fs::path& path) {
   const ColmapCamera camera = read_calibmar(path);
@@ -111,30 +86,11 @@ Housing calibmar_housing(const fs::path& path) {
 // Returns the port `name`; null for "none". Error that starts with `where` if it is not defined.
 const HousingPort* find_port(const Housing& housing, const std::string& name,
                              const std::string& where) {
-  if (name == kDry) return nullptr;
+  if (name == kNone) return nullptr;
   const auto port = housing.ports.find(name);
   if (port == housing.ports.end()) fail("{} '{}' is not defined", where, name);
   return &port->second;
 }
-
-struct PortForPose {
-  const Pose& pose;
-  const std::string where;
-
-  refractive::Port<double> operator()(const WaterSurface& surface) const {
-    return port_seen_from(pose, surface, where);
-  }
-  refractive::Port<double> operator()(const refractive::Port<double>& port) const { return port; }
-};
-
-struct PortWithoutPose {
-  const std::string& name;
-
-  refractive::Port<double> operator()(const WaterSurface&) const {
-    fail("port '{}' is a water surface, which is a different port for every pose", name);
-  }
-  refractive::Port<double> operator()(const refractive::Port<double>& port) const { return port; }
-};
 
 }  // namespace
 
@@ -162,17 +118,29 @@ std::optional<refractive::Port<double>> Housing::port_at(const std::string& name
   const std::string where = image + ": its port";
   const HousingPort* const port = find_port(*this, name, where);
   if (!port) return std::nullopt;
-  return std::visit(PortForPose{pose, fmt::format("{} '{}'", where, name)}, *port);
+  return by_kind(
+      *port,
+      [&](const WaterSurface& surface) -> Port {
+        return port_seen_from(pose, surface, fmt::format("{} '{}'", where, name));
+      },
+      [](const Port& fixed) { return fixed; });
 }
 
 std::optional<refractive::Port<double>> Housing::carried_port(const std::string& name) const {
   const HousingPort* const port = find_port(*this, name, "port");
   if (!port) return std::nullopt;
-  return std::visit(PortWithoutPose{name}, *port);
+  return by_kind(
+      *port,
+      [&](const WaterSurface&) -> Port {
+        fail("port '{}' is a water surface, which is a different port for every pose", name);
+      },
+      [](const Port& fixed) { return fixed; });
 }
 
 void check_port(const HousingPort& port, const std::string& where) {
-  std::visit(Check{where}, port);
+  by_kind(
+      port, [&](const WaterSurface& surface) { check_water_surface(surface, where); },
+      [&](const Port& fixed) { check_port(fixed, where); });
 }
 
 void refuse_water_surfaces(const Housing& housing, const fs::path& file) {
@@ -189,13 +157,12 @@ Housing parse_housing(const fs::path& path) {
   const nlohmann::json json = read_json(path);
   const JsonPlace root{json, path.string() + ": housing"};
   root.require_object({"version", "ports", "default", "cameras", "images"});
-  if (root.at("version").json != 1)
-    fail("{}.version is {}, expected 1", root.where, to_text(root.at("version").json));
+  root.require_version_1();
   Housing housing;
   read_ports(root.at("ports"), housing);
-  housing.default_port = port_name(root, "default", housing);
+  housing.default_port = defined_name(root, "default", housing.ports, "port");
   if (root.has("cameras")) read_cameras(root.at("cameras"), housing);
-  if (root.has("images")) read_images(root.at("images"), housing);
+  if (root.has("images")) housing.images = names_by_image(root.at("images"), housing.ports, "port");
   return housing;
 }
 
@@ -215,13 +182,13 @@ void write_housing(const fs::path& path, const Housing& housing) {
   json["ports"] = nlohmann::json::object();
   for (const auto& [name, port] : housing.ports) {
     check_port(port, fmt::format("{}.ports.{}", where, name));
-    json["ports"][name] = std::visit(ToJson{}, port);
+    json["ports"][name] = by_kind(port, water_surface_to_json, port_to_json);
     const auto sigmas = housing.sigmas.find(name);
     if (sigmas != housing.sigmas.end() && !sigmas->second.empty())
       json["ports"][name][kSigma] = sigmas_to_json(sigmas->second);
   }
   const auto checked = [&](const std::string& name) {
-    if (name != kDry && !housing.ports.contains(name))
+    if (name != kNone && !housing.ports.contains(name))
       fail("{}: port '{}' is not defined", where, name);
     return name;
   };
@@ -254,27 +221,15 @@ Housing for_images(const Housing& housing, std::span<const NamedCamera> images,
 }
 
 void attach_ports(Scene& scene, const Housing& housing, const std::string& file) {
-  std::vector<std::string> names;
-  for (const SceneImage& image : scene.images)
-    names.push_back(fs::path(image.path).generic_string());
-  const auto entries = entries_of_all(housing.images, names, file + ": housing.images.");
-  std::set<std::string> used;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    SceneImage& image = scene.images[i];
-    if (entries[i] != housing.images.end()) {
-      used.insert(entries[i]->first);
-      attach(image, entries[i]->second, housing, file);
-    } else if (housing.cameras.empty()) {
-      attach(image, housing.default_port, housing, file);
-    } else {
+  for_each_entry(scene, housing.images, file, "housing.images", [&](SceneImage& image, auto entry) {
+    const bool has_entry = entry != housing.images.end();
+    if (!has_entry && !housing.cameras.empty())
       fail(
           "{}: housing.cameras names ports by COLMAP camera, which a scene does not contain: add "
           "an entry for {} under housing.images (InterfaceCOLMAP writes these entries)",
           file, image.path);
-    }
-  }
-  for (const auto& [name, unused] : housing.images)
-    if (!used.contains(name)) log_warning("{}: no image matches images.{}", file, name);
+    attach(image, has_entry ? entry->second : housing.default_port, housing, file);
+  });
   warn_of_ports_in_scene(scene, housing, file);
 }
 

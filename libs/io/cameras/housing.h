@@ -86,7 +86,7 @@ enum class PortValues { checked, passed_over };
 // Error that names the file, the key and the value for an unknown or missing key, a wrong type, a
 // version other than 1, an unknown port type, a port name that is not defined, an index outside 1
 // to 3, a length outside 0 to 1 m, a zero normal, a flat port's normal whose z is not positive, a
-// standard deviation that is not possible (port_sigmas_json.h) or that belongs to a water surface,
+// standard deviation that is not possible (sigmas_from_json) or that belongs to a water surface,
 // a dome centre that is not nearer to the camera than 0.9 times the inner radius, a water or glass
 // index below the air index, or a Calibmar file without the key "non_svp_model". A normal whose
 // length differs from 1 by more than 1e-6 is normalised with a warning.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "private/cameras/image_names.h"
 
+#include <filesystem>
 #include <set>
 
-#include "base/error.h"
+#include "base/log.h"
 
 namespace axial::io {
 namespace {
@@ -65,6 +66,21 @@ ByImage entries_for(const std::vector<std::string>& names, const std::vector<std
   }
   entries.merge(of_paths);
   return entries;
+}
+
+void for_each_entry(Scene& scene, const ByImage& entries, const std::string& file,
+                    const std::string& key, const UseEntry& use) {
+  std::vector<std::string> names;
+  for (const SceneImage& image : scene.images)
+    names.push_back(std::filesystem::path(image.path).generic_string());
+  const auto found = entries_of_all(entries, names, fmt::format("{}: {}.", file, key));
+  std::set<std::string> used;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (found[i] != entries.end()) used.insert(found[i]->first);
+    use(scene.images[i], found[i]);
+  }
+  for (const auto& [name, unused] : entries)
+    if (!used.contains(name)) log_warning("{}: no image matches images.{}", file, name);
 }
 
 }  // namespace axial::io

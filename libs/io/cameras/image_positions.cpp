@@ -2,12 +2,11 @@
 #include "io/cameras/image_positions.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "io/cameras/position_file.h"
-#include "private/cameras/degrees.h"
-#include "private/cameras/position_unit.h"
+#include "private/cameras/position_parts.h"
 
 namespace axial::io {
 namespace {
@@ -19,12 +18,6 @@ enum Variant { kLiteral, kAnyCase, kAnyExtension, kAnyCaseAndExtension };
 
 constexpr int kRules = 4;
 
-std::string small_letters(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
-}
-
 std::string without_extension(const std::string& path) {
   return fs::path(path).replace_extension().string();
 }
@@ -33,8 +26,7 @@ bool is_photograph(const std::string& path) {
   static constexpr std::array kExtensions{".jpg",  ".jpeg", ".png", ".tif", ".tiff", ".bmp",
                                           ".webp", ".heic", ".dng", ".arw", ".cr2",  ".cr3",
                                           ".nef",  ".orf",  ".raf", ".rw2", ".gpr",  ".raw"};
-  return std::ranges::find(kExtensions, small_letters(fs::path(path).extension().string())) !=
-         kExtensions.end();
+  return std::ranges::find(kExtensions, lower_extension(path)) != kExtensions.end();
 }
 
 bool has_slash_at(const std::string& text, std::size_t at) {
@@ -53,7 +45,7 @@ std::string key_of(const std::string& path, int variant, bool is_image) {
   if ((variant == kAnyExtension || variant == kAnyCaseAndExtension) &&
       (is_image || is_photograph(path)))
     key = without_extension(key);
-  if (variant == kAnyCase || variant == kAnyCaseAndExtension) key = small_letters(key);
+  if (variant == kAnyCase || variant == kAnyCaseAndExtension) key = lower_case(key);
   return key;
 }
 

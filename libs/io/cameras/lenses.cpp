@@ -9,7 +9,7 @@
 #include "base/log.h"
 #include "base/output_name.h"
 #include "private/cameras/image_names.h"
-#include "private/cameras/lens_json.h"
+#include "private/cameras/port_json.h"
 
 namespace axial::io {
 namespace {
@@ -17,29 +17,11 @@ namespace {
 namespace fs = std::filesystem;
 using Distortion = refractive::LensDistortion<double>;
 
-const std::string kStraight = "none";
-
-std::string lens_name(const JsonPlace& place, const char* key, const SceneLenses& lenses) {
-  const std::string name = place.text(key);
-  if (name != kStraight && !lenses.lenses.contains(name))
-    fail("{}.{} is '{}', a lens that is not defined", place.where, key, name);
-  return name;
-}
-
 void read_definitions(const JsonPlace& place, SceneLenses& lenses) {
-  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
-  for (const auto& [name, unused] : place.json.items()) {
-    if (name == kStraight || name.empty())
+  for (const std::string& name : place.keys()) {
+    if (name == kNone || name.empty())
       fail("{}: '{}' cannot be the name of a lens ('none' means no distortion)", place.where, name);
     lenses.lenses[name] = distortion_from_json(place.at(name));
-  }
-}
-
-void read_images(const JsonPlace& place, SceneLenses& lenses) {
-  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
-  for (const auto& [key, unused] : place.json.items()) {
-    if (key.empty()) fail("{}: an image name is empty", place.where);
-    lenses.images[key] = lens_name(place, key.c_str(), lenses);
   }
 }
 
@@ -63,7 +45,7 @@ std::string name_beside(const fs::path& scene_path, const std::string& image) {
 
 // Returns the name of the lens. A new distortion gets a new name.
 std::string named(SceneLenses& lenses, const std::optional<Distortion>& distortion) {
-  if (!distortion) return kStraight;
+  if (!distortion) return kNone;
   for (const auto& [name, known] : lenses.lenses)
     if (known == *distortion) return name;
   const std::string name = fmt::format("lens_{}", lenses.lenses.size() + 1);
@@ -79,7 +61,7 @@ void check_names(const SceneLenses& lenses, const Scene& scene, const fs::path& 
     const std::string path = fs::path(image.path).generic_string();
     const std::string& name = name_for(lenses, path);
     const std::optional<Distortion> read =
-        name == kStraight ? std::nullopt : std::optional(lenses.lenses.at(name));
+        name == kNone ? std::nullopt : std::optional(lenses.lenses.at(name));
     if (read != image.camera.distortion)
       fail(
           "{}: images: the end of the path of {} matches another image, with lens '{}': rename a "
@@ -98,12 +80,11 @@ SceneLenses read_lenses(const fs::path& path) {
   const nlohmann::json json = read_json(path);
   const JsonPlace root{json, path.string() + ": lenses"};
   root.require_object({"version", "lenses", "default", "images"});
-  if (root.at("version").json != 1)
-    fail("{}.version is {}, expected 1", root.where, to_text(root.at("version").json));
+  root.require_version_1();
   SceneLenses lenses;
   read_definitions(root.at("lenses"), lenses);
-  lenses.default_lens = lens_name(root, "default", lenses);
-  if (root.has("images")) read_images(root.at("images"), lenses);
+  lenses.default_lens = defined_name(root, "default", lenses.lenses, "lens");
+  if (root.has("images")) lenses.images = names_by_image(root.at("images"), lenses.lenses, "lens");
   return lenses;
 }
 
@@ -135,26 +116,18 @@ SceneLenses lenses_of(const Scene& scene, const fs::path& scene_path) {
 }
 
 void attach_lenses(Scene& scene, const SceneLenses& lenses, const fs::path& file) {
-  std::vector<std::string> names;
-  for (const SceneImage& image : scene.images)
-    names.push_back(fs::path(image.path).generic_string());
-  const auto entries = entries_of_all(lenses.images, names, file.string() + ": lenses.images.");
-  std::set<std::string> used;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    SceneImage& image = scene.images[i];
-    const bool has_entry = entries[i] != lenses.images.end();
-    if (has_entry) used.insert(entries[i]->first);
-    if (!image.calibrated) continue;
-    const std::string& name = has_entry ? entries[i]->second : lenses.default_lens;
-    image.camera.distortion.reset();
-    if (name == kStraight) continue;
-    image.camera.distortion = lenses.lenses.at(name);
-    if (!images_anything(image.camera))
-      fail("{}: lenses.{}: is not a valid lens for {}: it mirrors the image", file.string(), name,
-           image.path);
-  }
-  for (const auto& [name, unused] : lenses.images)
-    if (!used.contains(name)) log_warning("{}: no image matches images.{}", file.string(), name);
+  for_each_entry(scene, lenses.images, file.string(), "lenses.images",
+                 [&](SceneImage& image, auto entry) {
+                   if (!image.calibrated) return;
+                   const std::string& name =
+                       entry == lenses.images.end() ? lenses.default_lens : entry->second;
+                   image.camera.distortion.reset();
+                   if (name == kNone) return;
+                   image.camera.distortion = lenses.lenses.at(name);
+                   if (!images_anything(image.camera))
+                     fail("{}: lenses.{}: is not a valid lens for {}: it mirrors the image",
+                          file.string(), name, image.path);
+                 });
 }
 
 bool attach_lenses_beside(Scene& scene, const fs::path& scene_path) {

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "private/colmap/colmap_port.h"
+#include "private/colmap/colmap_parts.h"
 
 namespace axial::io {
 namespace {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -28,16 +29,8 @@ void require_unit(const Eigen::Vector3d& normal, const std::string& where) {
     fail("{}.normal has length {}, expected 1", where, normal.norm());
 }
 
-Eigen::Vector3d vector(const JsonPlace& place) {
-  const Json& v = place.json;
-  if (!v.is_array() || v.size() != 3 ||
-      !std::ranges::all_of(v, [](const Json& number) { return number.is_number(); }))
-    fail("{} is {}, expected three numbers", place.where, to_text(v));
-  return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
-}
-
 Eigen::Vector3d unit_normal(const JsonPlace& place) {
-  return io::unit_normal(vector(place), place.where);
+  return io::unit_normal(place.vector(), place.where);
 }
 
 Json to_json(const Eigen::Vector3d& v) {
@@ -87,7 +80,7 @@ refractive::DomePort<double> dome_from_json(const JsonPlace& place) {
   place.require_object(
       {"type", "center_m", "inner_radius_m", "thickness_m", "n_air", "n_glass", "n_water"});
   refractive::DomePort<double> port;
-  if (place.has("center_m")) port.centre = vector(place.at("center_m"));
+  if (place.has("center_m")) port.centre = place.at("center_m").vector();
   port.inner_radius = place.number("inner_radius_m");
   read_glass(place, port);
   return port;
@@ -135,10 +128,8 @@ bool JsonPlace::has(const char* key) const {
 }
 
 void JsonPlace::require_object(std::initializer_list<const char*> known) const {
-  if (!json.is_object()) fail("{} is not an object in braces", where);
-  for (const auto& item : json.items())
-    if (std::ranges::find(known, item.key()) == known.end())
-      fail("{}: unknown key '{}'", where, item.key());
+  for (const std::string& key : keys())
+    if (std::ranges::find(known, key) == known.end()) fail("{}: unknown key '{}'", where, key);
 }
 
 JsonPlace JsonPlace::at(const std::string& key) const {
@@ -158,6 +149,25 @@ std::string JsonPlace::text(const char* key) const {
   const JsonPlace value = at(key);
   if (!value.json.is_string()) fail("{} is {}, expected a text", value.where, to_text(value.json));
   return value.json.get<std::string>();
+}
+
+Eigen::Vector3d JsonPlace::vector() const {
+  if (!json.is_array() || json.size() != 3 ||
+      !std::ranges::all_of(json, [](const Json& number) { return number.is_number(); }))
+    fail("{} is {}, expected three numbers", where, to_text(json));
+  return {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()};
+}
+
+std::vector<std::string> JsonPlace::keys() const {
+  if (!json.is_object()) fail("{} is not an object in braces", where);
+  std::vector<std::string> keys;
+  for (const auto& item : json.items()) keys.push_back(item.key());
+  return keys;
+}
+
+void JsonPlace::require_version_1() const {
+  if (const Json& version = at("version").json; version != 1)
+    fail("{}.version is {}, expected 1", where, to_text(version));
 }
 
 Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where) {
@@ -201,7 +211,7 @@ WaterSurface water_surface_from_json(const JsonPlace& place) {
   place.require_object({"type", "normal", "point_m", "n_air", "n_water"});
   WaterSurface surface;
   surface.normal = unit_normal(place.at("normal"));
-  surface.point = vector(place.at("point_m"));
+  surface.point = place.at("point_m").vector();
   if (place.has("n_air")) surface.n_air = place.number("n_air");
   surface.n_water = place.number("n_water");
   check_water_surface(surface, place.where);
@@ -224,6 +234,58 @@ void check_water_surface(const WaterSurface& surface, const std::string& where) 
   require_unit(surface.normal, where);
   if (const Eigen::Vector3d& p = surface.point; !p.allFinite())
     fail("{}.point_m is [{},{},{}], which is not a point", where, p.x(), p.y(), p.z());
+}
+
+namespace {
+
+// Reads a list into the first elements of `numbers`.
+void read_list(const JsonPlace& place, const char* key, std::span<double> numbers) {
+  if (!place.has(key)) return;
+  const nlohmann::json& list = place.json.at(key);
+  if (!list.is_array() || list.size() > numbers.size())
+    fail("{}.{} is {}, expected at most {} numbers", place.where, key, to_text(list),
+         numbers.size());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (!list[i].is_number()) fail("{}.{}[{}] is not a number", place.where, key, i);
+    numbers[i] = list[i].get<double>();
+  }
+}
+
+double read_type(const JsonPlace& place) {
+  const std::string type = place.text("type");
+  if (type != "perspective" && type != "fisheye")
+    fail("{}.type is '{}', expected 'perspective' or 'fisheye'", place.where, type);
+  return type == "fisheye" ? 1 : 0;
+}
+
+}  // namespace
+
+refractive::LensDistortion<double> distortion_from_json(const JsonPlace& place) {
+  place.require_object({"type", "spread", "radial", "radial_below", "tangential", "thin_prism"});
+  refractive::LensDistortion<double> lens;
+  lens.fisheye = read_type(place);
+  if (place.has("spread")) lens.spread = place.number("spread");
+  read_list(place, "radial", lens.above);
+  read_list(place, "radial_below", lens.below);
+  double tangential[] = {0, 0};
+  read_list(place, "tangential", tangential);
+  lens.p1 = tangential[0];
+  lens.p2 = tangential[1];
+  read_list(place, "thin_prism", {lens.prism.data(), 2});
+  if (!(lens.spread > 0))
+    fail("{}.spread is {}, expected a positive number", place.where, lens.spread);
+  if (!(lens.above[0] > 0))
+    fail("{}.radial begins with {}, expected a positive number", place.where, lens.above[0]);
+  return lens;
+}
+
+nlohmann::json distortion_to_json(const refractive::LensDistortion<double>& lens) {
+  return {{"type", lens.fisheye > 0 ? "fisheye" : "perspective"},
+          {"spread", lens.spread},
+          {"radial", lens.above},
+          {"radial_below", lens.below},
+          {"tangential", {lens.p1, lens.p2}},
+          {"thin_prism", {lens.prism.x(), lens.prism.y()}}};
 }
 
 }  // namespace axial::io

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "private/cameras/port_sigmas_json.h"
+#include "private/cameras/port_json.h"
 
 namespace axial::io {
 namespace {

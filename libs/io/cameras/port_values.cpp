@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/log.h"
-#include "private/colmap/colmap_port.h"
+#include "private/colmap/colmap_parts.h"
 
 namespace axial::io {
 namespace {

@@ -6,9 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "private/bytes/text_reader.h"
-#include "private/cameras/degrees.h"
-#include "private/cameras/position_layout.h"
-#include "private/cameras/position_row.h"
+#include "private/cameras/position_parts.h"
 
 namespace axial::io {
 namespace {
@@ -26,7 +24,6 @@ std::string text_of(const std::filesystem::path& file) {
 // The rows of a file before their units are known.
 struct Rows {
   std::vector<PositionRow> rows;
-  std::vector<int> lines;
   PositionLayout layout;
 };
 
@@ -40,24 +37,10 @@ Rows read_rows(const std::filesystem::path& file, const IsImage& is_image) {
     if (read_layout_line(line->rest(), where, found.layout)) continue;
     auto row = read_position_row(line->rest(), found.layout, is_image, where);
     if (!row) continue;
+    row->line = number;
     found.rows.push_back(*std::move(row));
-    found.lines.push_back(number);
   }
   return found;
-}
-
-std::size_t drop_empty(Rows& found) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < found.rows.size(); ++i) {
-    if (found.rows[i].without_position) continue;
-    found.lines[kept] = found.lines[i];
-    if (kept != i) found.rows[kept] = std::move(found.rows[i]);
-    ++kept;
-  }
-  const std::size_t dropped = found.rows.size() - kept;
-  found.rows.resize(kept);
-  found.lines.resize(kept);
-  return dropped;
 }
 
 void turn_depths(Rows& found, std::vector<std::string>& notes) {
@@ -91,8 +74,10 @@ PositionReading read_stated_degrees(const Rows& found, const std::string& file) 
   if (!found.layout.other_datum.empty())
     fail("{}: the positions are degrees ({}); {}", file, found.layout.other_datum, kProjectRemedy);
   const std::vector<Eigen::Vector3d> places = places_of(found);
+  std::vector<int> lines;
+  for (const PositionRow& row : found.rows) lines.push_back(row.line);
   return read_as_degrees(places, stated_order(places, found.layout.longitude_first, file), file,
-                         found.lines);
+                         lines);
 }
 
 // The readings as degrees of a file that does not state its unit.
@@ -106,7 +91,7 @@ std::vector<PositionReading> possible_degrees(const Rows& found, const std::stri
     if (!found.rows[row].known || is_lost_fix(found.rows[row].position)) continue;
     rows.push_back(row);
     places.push_back(found.rows[row].position);
-    lines.push_back(found.lines[row]);
+    lines.push_back(found.rows[row].line);
   }
   for (const DegreeOrder order : orders_without_unit(places, found.layout.longitude_first)) {
     PositionReading reading = read_as_degrees(places, order, file, lines);
@@ -131,7 +116,8 @@ void note_accuracies(const Rows& found, std::vector<std::string>& notes) {
 PositionFile read_positions(const std::filesystem::path& file, const IsImage& is_image) {
   Rows found = read_rows(file, is_image);
   PositionFile result;
-  if (const std::size_t empty = drop_empty(found))
+  if (const auto empty =
+          std::erase_if(found.rows, [](const PositionRow& row) { return row.without_position; }))
     result.notes.push_back(fmt::format("{} lines have no coordinates and are skipped", empty));
   turn_depths(found, result.notes);
   std::vector<Eigen::Vector3d> places = places_of(found);
@@ -144,8 +130,7 @@ PositionFile read_positions(const std::filesystem::path& file, const IsImage& is
   note_accuracies(found, result.notes);
   for (std::size_t i = 0; i < found.rows.size(); ++i) {
     PositionRow& row = found.rows[i];
-    result.positions.push_back(
-        {std::move(row.name), places[i], found.lines[i], row.known, row.sigma});
+    result.positions.push_back({std::move(row.name), places[i], row.line, row.known, row.sigma});
   }
   return result;
 }

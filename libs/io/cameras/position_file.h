@@ -61,7 +61,7 @@ struct PositionFile {
 //    skipped.
 //
 // Lines before the first position may name the columns and the system of the coordinates
-// (private/cameras/position_layout.h lists the forms). Without them, x, y and z follow the name.
+// (read_layout_line() lists the forms). Without them, x, y and z follow the name.
 // `depth` is a height with the opposite sign if one depth of the file is positive. Longitude and
 // latitude in degrees become metres in the UTM zone of their mean on the ellipsoid WGS 84, if a
 // line states that they are degrees. If no line states the unit, the positions of images whose x

@@ -1,24 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/cameras/position_layout.h"
-
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <initializer_list>
 
+#include "base/file_extension.h"
 #include "base/split.h"
 #include "private/bytes/text_reader.h"
+#include "private/cameras/position_parts.h"
 
 namespace axial::io {
 namespace {
 
 using Words = std::initializer_list<std::string_view>;
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
 
 bool has(Words words, std::string_view word) {
   return std::ranges::find(words, word) != words.end();
@@ -36,7 +29,7 @@ struct ColumnName {
 
 ColumnName column_name(std::string_view field) {
   ColumnName name;
-  std::string text = lower(field);
+  std::string text = lower_case(std::string(field));
   const std::size_t open = text.find_first_of("([");
   if (open != std::string::npos) {
     const std::size_t close = std::min(text.find_first_of(")]", open), text.size());
@@ -232,7 +225,7 @@ void read_epsg(std::string_view text, int code, PositionLayout& layout) {
 
 // The line of OpenDroneMap's geo.txt.
 bool read_projection(std::string_view text, const std::string& where, PositionLayout& layout) {
-  const std::string words = lower(text);
+  const std::string words = lower_case(std::string(text));
   if (words.starts_with("epsg:")) {
     const auto code = parse_number<int>(trimmed(std::string_view(words).substr(5)));
     if (!code) return false;
@@ -257,7 +250,7 @@ bool read_projection(std::string_view text, const std::string& where, PositionLa
 
 bool read_coordinate_system(std::string_view text, const std::string& where,
                             PositionLayout& layout) {
-  const std::string words = lower(text);
+  const std::string words = lower_case(std::string(text));
   if (!text.starts_with('#') || !contains(words, "coordinatesystem:")) return false;
   refuse_feet(words, where);
   if (contains(words, "projcs") || contains(words, "local_cs") || contains(words, "geoccs"))
@@ -309,7 +302,7 @@ std::optional<std::vector<std::string>> split_fields(std::string_view text, char
 }
 
 bool read_layout_line(std::string_view text, const std::string& where, PositionLayout& layout) {
-  if (text.size() == 5 && lower(text.substr(0, 4)) == "sep=") {
+  if (text.size() == 5 && lower_case(std::string(text.substr(0, 4))) == "sep=") {
     layout.delimiter = text[4];
     return true;
   }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/cameras/position_row.h"
-
 #include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
 
 #include "private/bytes/text_reader.h"
+#include "private/cameras/position_parts.h"
 
 namespace axial::io {
 namespace {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/cameras/position_unit.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "io/cameras/image_positions.h"
-#include "private/cameras/degrees.h"
+#include "private/cameras/position_parts.h"
 #include "scene/robust_similarity.h"
 
 namespace axial::io {

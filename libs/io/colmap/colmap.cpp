@@ -11,20 +11,12 @@
 #include "base/log.h"
 #include "io/cameras/calibmar.h"
 #include "private/cameras/port_values.h"
-#include "private/colmap/colmap_folder.h"
 #include "private/colmap/colmap_parts.h"
 
 namespace axial::io {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class T>
-std::vector<T> read_part(const fs::path& folder, const std::string& name, ModelForm form,
-                         std::vector<T> (*text)(const fs::path&),
-                         std::vector<T> (*binary)(const fs::path&)) {
-  return (form == ModelForm::text ? text : binary)(part_file(folder, name, form));
-}
 
 bool has_cameras(const fs::path& folder) {
   return has_part(folder, "cameras", ModelForm::text) ||
@@ -114,9 +106,9 @@ fs::path find_colmap_model(const fs::path& folder) {
 ColmapModel read_colmap_model(const fs::path& folder) {
   const ModelForm form = model_form(folder);
   ColmapModel model;
-  model.cameras = read_part(folder, "cameras", form, read_cameras_text, read_cameras_binary);
-  model.images = read_part(folder, "images", form, read_images_text, read_images_binary);
-  model.points = read_part(folder, "points3D", form, read_points_text, read_points_binary);
+  model.cameras = kCameras.read(folder, form);
+  model.images = kImages.read(folder, form);
+  model.points = kPoints.read(folder, form);
   const std::string where = folder.string();
   require_unique_ids(model.cameras, "camera", where);
   require_unique_ids(model.images, "image", where);

@@ -3,7 +3,6 @@
 #include "private/bytes/byte_reader.h"
 #include "private/bytes/byte_writer.h"
 #include "private/colmap/colmap_parts.h"
-#include "private/colmap/colmap_port.h"
 
 namespace axial::io {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "lens/models.h"
+#include "private/colmap/colmap_parts.h"
 #include "scene/camera_model.h"
 
 namespace axial::io {
@@ -15,16 +16,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kHalf = 0.5;  // COLMAP's pixel centres
-
-std::vector<double> parameters_of(const refractive::FlatPort<double>& port) {
-  return {port.normal.x(), port.normal.y(), port.normal.z(), port.distance,
-          port.thickness,  port.n_air,      port.n_glass,    port.n_water};
-}
-
-std::vector<double> parameters_of(const refractive::DomePort<double>& port) {
-  return {port.centre.x(), port.centre.y(), port.centre.z(), port.inner_radius,
-          port.thickness,  port.n_air,      port.n_glass,    port.n_water};
-}
 
 // Cameras with equal keys become one COLMAP camera.
 std::vector<double> key_of(const CameraModel& camera) {
@@ -39,8 +30,7 @@ std::vector<double> key_of(const CameraModel& camera) {
     distortion->each_field([&](double number) { key.push_back(number); });
   if (!camera.port) return key;
   key.push_back(static_cast<double>(camera.port->index()));
-  const std::vector<double> port =
-      std::visit([](const auto& p) { return parameters_of(p); }, *camera.port);
+  const PortNumbers port = port_numbers(*camera.port);
   key.insert(key.end(), port.begin(), port.end());
   return key;
 }

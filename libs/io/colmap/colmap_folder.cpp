@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/colmap/colmap_folder.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,7 +6,6 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "private/colmap/colmap_parts.h"
-#include "private/colmap/colmap_port.h"
 
 namespace axial::io {
 namespace {
@@ -81,12 +78,12 @@ bool same_part(const std::vector<T>& a, const std::vector<T>& b) {
                             [](const T* x, const T* y) { return x->id == y->id && same(*x, *y); });
 }
 
-// True if `file` differs from `part` of the model.
+// True if the file of a part in `form` differs from `items`.
 template <class T>
-bool differs(const fs::path& file, ModelForm form, const std::vector<T>& part,
-             std::vector<T> (*text)(const fs::path&), std::vector<T> (*binary)(const fs::path&)) {
+bool differs(const fs::path& folder, ModelForm form, const ModelPart<T>& part,
+             const std::vector<T>& items) {
   try {
-    return !same_part((form == ModelForm::text ? text : binary)(file), part);
+    return !same_part(part.read(folder, form), items);
   } catch (const Error&) {
     return true;
   }
@@ -99,13 +96,11 @@ struct IgnoredFiles {
   std::vector<std::string> used = {}, ignored = {};
 
   template <class T>
-  void add(const char* name, const std::vector<T>& part, std::vector<T> (*text)(const fs::path&),
-           std::vector<T> (*binary)(const fs::path&)) {
+  void add(const ModelPart<T>& part, const std::vector<T>& items) {
     const ModelForm other = other_than(read);
-    const fs::path file = part_file(folder, name, other);
-    if (!has_part(folder, name, other) || !differs(file, other, part, text, binary)) return;
-    used.push_back(part_file(folder, name, read).filename().string());
-    ignored.push_back(file.filename().string());
+    if (!has_part(folder, part.name, other) || !differs(folder, other, part, items)) return;
+    used.push_back(part_file(folder, part.name, read).filename().string());
+    ignored.push_back(part_file(folder, part.name, other).filename().string());
   }
 
   void warn() const {
@@ -151,15 +146,15 @@ ModelForm cameras_form(const fs::path& folder) {
 void warn_of_ignored_cameras(const fs::path& folder, ModelForm read,
                              const std::vector<ColmapCamera>& cameras) {
   IgnoredFiles ignored{folder, read};
-  ignored.add("cameras", cameras, read_cameras_text, read_cameras_binary);
+  ignored.add(kCameras, cameras);
   ignored.warn();
 }
 
 void warn_of_ignored_files(const fs::path& folder, ModelForm read, const ColmapModel& model) {
   IgnoredFiles ignored{folder, read};
-  ignored.add("cameras", model.cameras, read_cameras_text, read_cameras_binary);
-  ignored.add("images", model.images, read_images_text, read_images_binary);
-  ignored.add("points3D", model.points, read_points_text, read_points_binary);
+  ignored.add(kCameras, model.cameras);
+  ignored.add(kImages, model.images);
+  ignored.add(kPoints, model.points);
   ignored.warn();
 }
 

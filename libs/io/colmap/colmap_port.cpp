@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/colmap/colmap_port.h"
-
 #include <algorithm>
 
 #include "base/error.h"
 #include "private/cameras/port_json.h"
+#include "private/colmap/colmap_parts.h"
 
 namespace axial::io {
 namespace {

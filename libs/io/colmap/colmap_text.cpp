@@ -3,9 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "private/bytes/text_reader.h"
-#include "private/colmap/colmap_folder.h"
 #include "private/colmap/colmap_parts.h"
-#include "private/colmap/colmap_port.h"
 
 namespace axial::io {
 namespace {

@@ -22,13 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](char c) {
-    return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return text;
-}
-
 // The maps for cv::remap. A map stays in memory from the first to the last image of its camera.
 class UndistortionMaps {
  public:
@@ -115,7 +108,7 @@ void require_apart(std::span<const DistortedImage> images, const fs::path& model
   std::map<std::string, const std::string*> taken;
   for (const DistortedImage& image : images) {
     const std::string undistorted = undistorted_name(image).generic_string();
-    const auto [other, added] = taken.try_emplace(lower(undistorted), &image.name);
+    const auto [other, added] = taken.try_emplace(lower_case(undistorted), &image.name);
     if (!added)
       fail("{}: the images {} and {} would both be undistorted to {}: rename one image",
            model_folder.string(), *other->second, image.name, undistorted);

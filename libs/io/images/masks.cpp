@@ -48,6 +48,14 @@ std::string words_of(const std::vector<MaskName>& names) {
   return in_words(items);
 }
 
+// Uses `path` as the mask unless a better candidate was found before.
+void add_candidate(const fs::path& path, FoundMask& found) {
+  if (found.path.empty())
+    found.path = path;
+  else
+    found.others.push_back(path);
+}
+
 // Finds masks in a folder of their own.
 class MaskFolder {
  public:
@@ -68,11 +76,7 @@ class MaskFolder {
       for (const MaskName& name : names) {
         if (name.of_whole_name ? !own_name : !own_stem) continue;
         const fs::path path = place(end) / name.name;
-        if (!is_there(path) || images_.contains(path.string())) continue;
-        if (found.path.empty())
-          found.path = path;
-        else
-          found.others.push_back(path);
+        if (is_there(path) && !images_.contains(path.string())) add_candidate(path, found);
       }
     }
     if (folders.empty()) folders.push_back(place(image.parent_path().filename()).string());
@@ -127,13 +131,8 @@ void search_beside(const MaskRequest& request, const std::unordered_set<std::str
     const fs::path path = request.image.parent_path() / name.name;
     if (path != request.named && !images.contains(path.string())) candidates.push_back(path);
   }
-  for (const fs::path& path : candidates) {
-    if (!is_there(path)) continue;
-    if (found.path.empty())
-      found.path = path;
-    else
-      found.others.push_back(path);
-  }
+  for (const fs::path& path : candidates)
+    if (is_there(path)) add_candidate(path, found);
   const std::string named = request.named.empty() ? "" : request.named.string() + ", and for ";
   found.looked_for =
       fmt::format("{}{} in {}", named, words_of(names), request.image.parent_path().string());

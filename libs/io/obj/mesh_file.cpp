@@ -1,16 +1,107 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/obj/mesh_file.h"
 
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstring>
+#include <iterator>
+#include <limits>
+
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "base/output_name.h"
-#include "io/obj/mesh_glb.h"
-#include "io/obj/mesh_obj.h"
 #include "io/openmvs/scene_files.h"
 #include "io/ply/ply.h"
 
 namespace axial::io {
 namespace {
+
+// Coordinates have nine significant digits, so that reading gives the same float.
+void write_mesh_obj(const std::filesystem::path& path, const Mesh& mesh, const LocalFrame& frame) {
+  fmt::memory_buffer text;
+  const auto out = std::back_inserter(text);
+  const Eigen::Vector3d& o = frame.origin;
+  if (!frame.is_world()) fmt::format_to(out, "# geo_offset {} {} {}\n", o.x(), o.y(), o.z());
+  for (const Eigen::Vector3f& v : mesh.vertices)
+    fmt::format_to(out, "v {:.9g} {:.9g} {:.9g}\n", v.x(), v.y(), v.z());
+  for (const auto& face : mesh.faces)
+    fmt::format_to(out, "f {} {} {}\n", face[0] + 1, face[1] + 1, face[2] + 1);
+  write_atomically(path, {text.data(), text.size()});
+}
+
+static_assert(std::endian::native == std::endian::little, "glTF is little-endian");
+static_assert(sizeof(Eigen::Vector3f) == 12 && sizeof(Mesh{}.faces[0]) == 12);
+
+constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2, kJson = 0x4E4F534A, kBinary = 0x004E4942;
+
+struct Bounds {
+  Eigen::Vector3f low = Eigen::Vector3f::Constant(std::numeric_limits<float>::max());
+  Eigen::Vector3f high = -low;
+};
+
+Bounds bounds_of(const Mesh& mesh, const std::string& file) {
+  Bounds bounds;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (!mesh.vertices[v].allFinite()) fail("{}: vertex {} is not finite", file, v);
+    bounds.low = bounds.low.cwiseMin(mesh.vertices[v]);
+    bounds.high = bounds.high.cwiseMax(mesh.vertices[v]);
+  }
+  return bounds;
+}
+
+template <class Vector>
+std::string list(const Vector& v) {
+  return fmt::format("[{},{},{}]", v.x(), v.y(), v.z());
+}
+
+// The text is padded with blanks to a multiple of four bytes, as glTF wants it.
+std::string json_of(const Mesh& mesh, const Bounds& bounds, const LocalFrame& frame) {
+  const std::size_t vertices = mesh.vertices.size(), faces = mesh.faces.size();
+  const std::string extras =
+      frame.is_world() ? "" : fmt::format(R"(,"extras":{{"geo_offset":{}}})", list(frame.origin));
+  std::string json = fmt::format(
+      R"({{"asset":{{"version":"2.0","generator":"AxialMVS"}},"scene":0,"scenes":[{{"nodes":[0]}}],)"
+      R"("nodes":[{{"mesh":0{}}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},)"
+      R"("indices":1,"mode":4}}]}}],"accessors":[{{"bufferView":0,"componentType":5126,)"
+      R"("count":{},"type":"VEC3","min":{},"max":{}}},{{"bufferView":1,"componentType":5125,)"
+      R"("count":{},"type":"SCALAR"}}],"bufferViews":[{{"buffer":0,"byteOffset":0,)"
+      R"("byteLength":{},"target":34962}},{{"buffer":0,"byteOffset":{},"byteLength":{},)"
+      R"("target":34963}}],"buffers":[{{"byteLength":{}}}]}})",
+      extras, vertices, list(bounds.low.cast<double>()), list(bounds.high.cast<double>()),
+      3 * faces, 12 * vertices, 12 * vertices, 12 * faces, 12 * (vertices + faces));
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  return json;
+}
+
+void append(std::string& bytes, const void* data, std::size_t size) {
+  bytes.append(static_cast<const char*>(data), size);
+}
+
+void append(std::string& bytes, std::uint32_t number) {
+  append(bytes, &number, sizeof number);
+}
+
+void write_mesh_glb(const std::filesystem::path& path, const Mesh& mesh, const LocalFrame& frame) {
+  if (mesh.faces.empty()) fail("{}: the mesh has no faces", path.string());
+  const std::string json = json_of(mesh, bounds_of(mesh, path.string()), frame);
+  const std::uint64_t binary = 12 * (std::uint64_t{mesh.vertices.size()} + mesh.faces.size());
+  const std::uint64_t whole = 12 + 8 + json.size() + 8 + binary;
+  if (whole > std::numeric_limits<std::uint32_t>::max())
+    fail("{}: a GLB holds at most 4 GiB, but the mesh has {} MB", path.string(), whole / 1'000'000);
+  std::string bytes;
+  bytes.reserve(whole);
+  for (const std::uint64_t number : {std::uint64_t{kMagic}, std::uint64_t{kVersion}, whole,
+                                     std::uint64_t{json.size()}, std::uint64_t{kJson}})
+    append(bytes, static_cast<std::uint32_t>(number));
+  bytes += json;
+  append(bytes, static_cast<std::uint32_t>(binary));
+  append(bytes, kBinary);
+  append(bytes, mesh.vertices.data(), 12 * mesh.vertices.size());
+  append(bytes, mesh.faces.data(), 12 * mesh.faces.size());
+  write_atomically(path, bytes);
+}
 
 bool is_written(const std::string& type) {
   return type == "ply" || type == "obj" || type == "glb";

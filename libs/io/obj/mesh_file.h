@@ -29,8 +29,9 @@ std::filesystem::path mesh_file(const MeshFile& file);
 
 // Writes the mesh in the format of the extension of `path`: OBJ, GLB, otherwise PLY. `frame` is the
 // frame of the mesh's positions. Positions are written in `frame`, and the file states its origin
-// unless `frame` is the world. OBJ and GLB have no colours. Errors as for write_mesh_ply(),
-// write_mesh_obj() and write_mesh_glb().
+// unless `frame` is the world, as by write_textured_mesh() (io/textured/textured_mesh.h). OBJ and
+// GLB have no colours. Errors as for write_mesh_ply(). In addition, a GLB gives an Error that names
+// the file for a mesh without faces, a vertex that is not finite, and more than 4 GiB.
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, const LocalFrame& frame);
 
 }  // namespace axial::io

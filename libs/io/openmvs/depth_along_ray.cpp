@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/openmvs/depth_along_ray.h"
-
 #include <algorithm>
 #include <cmath>
 #include <variant>
 
 #include "base/error.h"
+#include "private/openmvs/dmap_parts.h"
 
 namespace axial::io {
 namespace {

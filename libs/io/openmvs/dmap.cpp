@@ -9,9 +9,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/hash.h"
-#include "private/openmvs/depth_along_ray.h"
-#include "private/openmvs/dmap_format.h"
-#include "private/openmvs/dmap_side_file.h"
+#include "private/openmvs/dmap_parts.h"
 
 namespace axial::io {
 namespace {

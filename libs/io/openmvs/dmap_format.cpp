@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/openmvs/dmap_format.h"
-
 #include <algorithm>
 #include <cmath>
 #include <span>
 
 #include "base/error.h"
-#include "private/openmvs/rotation.h"
+#include "private/openmvs/dmap_parts.h"
+#include "private/openmvs/mvs_format.h"
 
 namespace axial::io {
 namespace {

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/openmvs/dmap_side_file.h"
-
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "private/cameras/lens_json.h"
 #include "private/cameras/port_json.h"
+#include "private/openmvs/dmap_parts.h"
 
 namespace axial::io {
 namespace {
@@ -46,8 +44,7 @@ std::optional<DmapSideFile> read_dmap_side_file(const fs::path& dmap) {
   const JsonPlace root{json, path.string() + ": depth map"};
   root.require_object({"version", "width", "height", "lens", "distortion", "port", "min_depth_m",
                        "max_depth_m", "made_from", "content"});
-  if (root.at("version").json != 1)
-    fail("{}.version is {}, expected 1", root.where, to_text(root.at("version").json));
+  root.require_version_1();
   DmapSideFile side;
   side.camera.width = read_side(root, "width");
   side.camera.height = read_side(root, "height");

@@ -13,7 +13,6 @@
 #include "io/openmvs/mvs_counts.h"
 #include "private/openmvs/image_folders.h"
 #include "private/openmvs/mvs_format.h"
-#include "private/openmvs/rotation.h"
 
 namespace axial::io {
 namespace {

@@ -1,14 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "private/openmvs/mvs_format.h"
 
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <filesystem>
 
+#include "base/error.h"
 #include "base/file_extension.h"
 #include "private/bytes/byte_reader.h"
 #include "private/bytes/byte_writer.h"
 
 namespace axial::io {
+Eigen::Matrix3d checked_rotation(const Eigen::Matrix3d& r, const std::string& where) {
+  if (!r.allFinite()) fail("{} contains a value that is not finite", where);
+  const double deviation = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(deviation <= 1e-3))
+    fail("{} is not a rotation: R R^T differs from I by {}", where, deviation);
+  if (r.determinant() < 0)
+    fail("{} is not a rotation: its determinant is {}", where, r.determinant());
+  // A matrix that is a rotation up to rounding stays unchanged, so that reading and writing a file
+  // does not change it.
+  if (deviation < 1e-9) return r;
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return svd.matrixU() * svd.matrixV().transpose();
+}
+
 namespace {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
@@ -18,202 +35,204 @@ constexpr std::size_t kLeastPlatform = mvs_bytes::kLength + 2 * mvs_bytes::kLeng
 constexpr std::size_t kLeastImage = mvs_bytes::kLength + 3 * 4;
 constexpr std::size_t kLeastVertex = 3 * 4 + mvs_bytes::kLength;
 constexpr std::size_t kLeastLine = 6 * 4 + mvs_bytes::kLength;
-constexpr std::size_t kTransform = 16 * 8;
 
-Eigen::Matrix3d read_matrix(ByteReader& in, std::string_view field) {
-  RowMajor matrix;
-  in.read(std::span(matrix.data(), 9), field);
-  return matrix;
-}
+// The reader and the writer of records have the same functions, so that fields() below states the
+// format once for both. Record<T> is the type of a record: T, or const T for the writer.
+class MvsReader {
+ public:
+  template <class T>
+  using Record = T;
 
-Eigen::Vector3d read_vector(ByteReader& in, std::string_view field) {
-  Eigen::Vector3d vector;
-  in.read(std::span(vector.data(), 3), field);
-  return vector;
-}
+  MvsReader(ByteReader& in, std::uint32_t file_version) : version(file_version), in_(in) {}
 
-Eigen::Vector3f read_vector3f(ByteReader& in, std::string_view field) {
-  Eigen::Vector3f vector;
-  in.read(std::span(vector.data(), 3), field);
-  return vector;
-}
+  const std::uint32_t version;
 
-MvsPose read_pose(ByteReader& in) {
-  MvsPose pose;
-  pose.rotation = read_matrix(in, "rotation");
-  pose.centre = read_vector(in, "centre");
-  return pose;
-}
-
-MvsCamera read_camera(ByteReader& in, std::uint32_t version) {
-  MvsCamera camera;
-  in.string("camera name");
-  if (version >= 4) in.string("camera bandName");
-  if (version >= 1) {
-    camera.width = in.read<std::uint32_t>("camera width");
-    camera.height = in.read<std::uint32_t>("camera height");
+  template <class T>
+  void number(T& value, std::string_view field) {
+    value = in_.read<T>(field);
   }
-  camera.k = read_matrix(in, "camera K");
-  camera.on_platform = read_pose(in);
-  return camera;
-}
-
-MvsPlatform read_platform(ByteReader& in, std::uint32_t version) {
-  MvsPlatform platform;
-  in.string("platform name");
-  platform.cameras.resize(in.count(kLeastCamera, "platform cameras"));
-  for (MvsCamera& camera : platform.cameras) camera = read_camera(in, version);
-  platform.poses.resize(in.count(mvs_bytes::kPose, "platform poses"));
-  for (MvsPose& pose : platform.poses) pose = read_pose(in);
-  return platform;
-}
-
-ViewScore read_view_score(ByteReader& in) {
-  ViewScore score;
-  score.image = in.read<std::uint32_t>("viewScores ID");
-  score.points = in.read<std::uint32_t>("viewScores points");
-  score.scale = in.read<float>("viewScores scale");
-  score.angle = in.read<float>("viewScores angle");
-  score.area = in.read<float>("viewScores area");
-  score.score = in.read<float>("viewScores score");
-  return score;
-}
-
-MvsImage read_image(ByteReader& in, std::uint32_t version) {
-  MvsImage image;
-  image.name = in.string("image name");
-  if (version >= 5) image.mask_name = in.string("image maskName");
-  image.platform = in.read<std::uint32_t>("image platformID");
-  image.camera = in.read<std::uint32_t>("image cameraID");
-  image.pose = in.read<std::uint32_t>("image poseID");
-  if (version >= 3) image.id = in.read<std::uint32_t>("image ID");
-  if (version >= 7) {
-    image.min_depth = in.read<float>("image minDepth");
-    image.average_depth = in.read<float>("image avgDepth");
-    image.max_depth = in.read<float>("image maxDepth");
-    image.view_scores.resize(in.count(mvs_bytes::kViewScore, "image viewScores"));
-    for (ViewScore& score : image.view_scores) score = read_view_score(in);
+  void text(std::string& value, std::string_view field) { value = in_.string(field); }
+  void unused_text(std::string_view field) { in_.string(field); }
+  template <class T>
+  void vector(Eigen::Matrix<T, 3, 1>& value, std::string_view field) {
+    in_.read(std::span(value.data(), 3), field);
   }
-  return image;
-}
-
-std::vector<SparseView> read_views(ByteReader& in) {
-  std::vector<SparseView> views(in.count(mvs_bytes::kView, "views"));
-  for (SparseView& view : views) {
-    view.image = in.read<std::uint32_t>("view imageID");
-    view.confidence = in.read<float>("view confidence");
+  void matrix(Eigen::Matrix3d& value, std::string_view field) {
+    RowMajor rows;
+    in_.read(std::span(rows.data(), 9), field);
+    value = rows;
   }
-  return views;
-}
-
-SparsePoint read_vertex(ByteReader& in) {
-  SparsePoint point;
-  point.position = read_vector3f(in, "vertex position");
-  point.views = read_views(in);
-  return point;
-}
-
-std::vector<Eigen::Vector3f> read_normals(ByteReader& in, std::string_view field) {
-  std::vector<Eigen::Vector3f> normals(in.count(mvs_bytes::kVector3f, field));
-  for (Eigen::Vector3f& normal : normals) normal = read_vector3f(in, field);
-  return normals;
-}
-
-std::vector<Rgb> read_colors(ByteReader& in, std::string_view field) {
-  std::vector<Rgb> colors(in.count(mvs_bytes::kColor, field));
-  for (Rgb& color : colors) {
-    in.read(std::span(color), field);
-    std::swap(color[0], color[2]);  // stored blue, green, red
+  template <class T>
+  void list(std::vector<T>& items, std::size_t least_bytes, std::string_view field) {
+    items.resize(in_.count(least_bytes, field));
+    for (T& item : items) fields(*this, item);
   }
-  return colors;
+  template <class T>
+  void unused_list(std::size_t least_bytes, std::string_view field) {
+    T item;
+    for (std::size_t left = in_.count(least_bytes, field); left > 0; --left) fields(*this, item);
+  }
+  void unused_transform() { in_.take(16 * sizeof(double), "transform"); }
+
+ private:
+  ByteReader& in_;
+};
+
+class MvsWriter {
+ public:
+  template <class T>
+  using Record = const T;
+
+  explicit MvsWriter(ByteWriter& out) : out_(out) {}
+
+  static constexpr std::uint32_t version = kMvsVersion;
+
+  template <class T>
+  void number(T value, std::string_view) {
+    out_.write(value);
+  }
+  void text(const std::string& value, std::string_view) { out_.string(value); }
+  void unused_text(std::string_view) { out_.string(""); }
+  template <class T>
+  void vector(const Eigen::Matrix<T, 3, 1>& value, std::string_view) {
+    out_.write(std::span(value.data(), 3));
+  }
+  void matrix(const Eigen::Matrix3d& value, std::string_view) {
+    const RowMajor rows = value;
+    out_.write(std::span(rows.data(), 9));
+  }
+  template <class T>
+  void list(const std::vector<T>& items, std::size_t, std::string_view) {
+    out_.count(items.size());
+    for (const T& item : items) fields(*this, item);
+  }
+  template <class T>
+  void unused_list(std::size_t, std::string_view) {
+    out_.count(0);
+  }
+  void unused_transform() {
+    for (int i = 0; i < 16; ++i) out_.write(i % 5 == 0 ? 1.0 : 0.0);  // the identity
+  }
+
+ private:
+  ByteWriter& out_;
+};
+
+template <class File, class T>
+using Record = typename File::template Record<T>;
+
+template <class File>
+void fields(File& file, Record<File, Eigen::Vector3f>& vector) {
+  file.vector(vector, "a vector");
 }
 
-void skip_lines(ByteReader& in) {
-  const std::size_t lines = in.count(kLeastLine, "lines");
-  for (std::size_t i = 0; i < lines; ++i) {
-    in.take(2 * mvs_bytes::kVector3f, "line");
-    read_views(in);
+// Stored blue, green, red.
+template <class File>
+void fields(File& file, Record<File, Rgb>& color) {
+  for (const std::size_t channel : {2u, 1u, 0u}) file.number(color[channel], "a colour");
+}
+
+template <class File>
+void fields(File& file, Record<File, MvsPose>& pose) {
+  file.matrix(pose.rotation, "rotation");
+  file.vector(pose.centre, "centre");
+}
+
+template <class File>
+void fields(File& file, Record<File, MvsCamera>& camera) {
+  file.unused_text("camera name");
+  if (file.version >= 4) file.unused_text("camera bandName");
+  if (file.version >= 1) {
+    file.number(camera.width, "camera width");
+    file.number(camera.height, "camera height");
   }
-  read_normals(in, "linesNormal");
-  read_colors(in, "linesColor");
+  file.matrix(camera.k, "camera K");
+  fields(file, camera.on_platform);
+}
+
+template <class File>
+void fields(File& file, Record<File, MvsPlatform>& platform) {
+  file.unused_text("platform name");
+  file.list(platform.cameras, kLeastCamera, "platform cameras");
+  file.list(platform.poses, mvs_bytes::kPose, "platform poses");
+}
+
+template <class File>
+void fields(File& file, Record<File, ViewScore>& score) {
+  file.number(score.image, "viewScores ID");
+  file.number(score.points, "viewScores points");
+  file.number(score.scale, "viewScores scale");
+  file.number(score.angle, "viewScores angle");
+  file.number(score.area, "viewScores area");
+  file.number(score.score, "viewScores score");
+}
+
+template <class File>
+void fields(File& file, Record<File, MvsImage>& image) {
+  file.text(image.name, "image name");
+  if (file.version >= 5) file.text(image.mask_name, "image maskName");
+  file.number(image.platform, "image platformID");
+  file.number(image.camera, "image cameraID");
+  file.number(image.pose, "image poseID");
+  if (file.version >= 3) file.number(image.id, "image ID");
+  if (file.version < 7) return;
+  file.number(image.min_depth, "image minDepth");
+  file.number(image.average_depth, "image avgDepth");
+  file.number(image.max_depth, "image maxDepth");
+  file.list(image.view_scores, mvs_bytes::kViewScore, "image viewScores");
+}
+
+template <class File>
+void fields(File& file, Record<File, SparseView>& view) {
+  file.number(view.image, "view imageID");
+  file.number(view.confidence, "view confidence");
+}
+
+template <class File>
+void fields(File& file, Record<File, SparsePoint>& point) {
+  file.vector(point.position, "vertex position");
+  file.list(point.views, mvs_bytes::kView, "views");
+}
+
+struct MvsLine {
+  Eigen::Vector3f from, to;
+};
+
+template <class File>
+void fields(File& file, Record<File, MvsLine>& line) {
+  file.vector(line.from, "line");
+  file.vector(line.to, "line");
+  file.template unused_list<SparseView>(mvs_bytes::kView, "views");
+}
+
+template <class File>
+void fields(File& file, Record<File, MvsFile>& mvs) {
+  file.list(mvs.platforms, kLeastPlatform, "platforms");
+  file.list(mvs.images, kLeastImage, "images");
+  file.list(mvs.points, kLeastVertex, "vertices");
+  file.list(mvs.normals, mvs_bytes::kVector3f, "verticesNormal");
+  file.list(mvs.colors, mvs_bytes::kColor, "verticesColor");
+  if (file.version < 1) return;
+  file.template unused_list<MvsLine>(kLeastLine, "lines");
+  file.template unused_list<Eigen::Vector3f>(mvs_bytes::kVector3f, "linesNormal");
+  file.template unused_list<Rgb>(mvs_bytes::kColor, "linesColor");
+  if (file.version >= 2) file.unused_transform();
+  if (file.version < 6) return;
+  file.matrix(mvs.box.rotation, "obb rot");
+  file.vector(mvs.box.min, "obb ptMin");
+  file.vector(mvs.box.max, "obb ptMax");
 }
 
 MvsFile read_body(ByteReader& in, std::uint32_t version) {
   MvsFile mvs;
-  mvs.platforms.resize(in.count(kLeastPlatform, "platforms"));
-  for (MvsPlatform& platform : mvs.platforms) platform = read_platform(in, version);
-  mvs.images.resize(in.count(kLeastImage, "images"));
-  for (MvsImage& image : mvs.images) image = read_image(in, version);
-  mvs.points.resize(in.count(kLeastVertex, "vertices"));
-  for (SparsePoint& point : mvs.points) point = read_vertex(in);
-  mvs.normals = read_normals(in, "verticesNormal");
-  mvs.colors = read_colors(in, "verticesColor");
-  if (version >= 1) skip_lines(in);
-  if (version >= 2) in.take(kTransform, "transform");
-  if (version >= 6) {
-    mvs.box.rotation = read_matrix(in, "obb rot");
-    mvs.box.min = read_vector(in, "obb ptMin");
-    mvs.box.max = read_vector(in, "obb ptMax");
-  }
+  MvsReader file(in, version);
+  fields(file, mvs);
   in.require_end();
   return mvs;
 }
 
 bool has_mvs_extension(const std::string& file) {
   return lower_extension(file) == ".mvs";
-}
-
-void write_matrix(ByteWriter& out, const Eigen::Matrix3d& matrix) {
-  const RowMajor rows = matrix;
-  out.write(std::span(rows.data(), 9));
-}
-
-template <class T>
-void write_vector(ByteWriter& out, const Eigen::Matrix<T, 3, 1>& vector) {
-  out.write(std::span(vector.data(), 3));
-}
-
-void write_pose(ByteWriter& out, const MvsPose& pose) {
-  write_matrix(out, pose.rotation);
-  write_vector(out, pose.centre);
-}
-
-void write_platform(ByteWriter& out, const MvsPlatform& platform) {
-  out.string("");
-  out.count(platform.cameras.size());
-  for (const MvsCamera& camera : platform.cameras) {
-    out.string("");
-    out.string("");
-    out.write(camera.width);
-    out.write(camera.height);
-    write_matrix(out, camera.k);
-    write_pose(out, camera.on_platform);
-  }
-  out.count(platform.poses.size());
-  for (const MvsPose& pose : platform.poses) write_pose(out, pose);
-}
-
-void write_image(ByteWriter& out, const MvsImage& image) {
-  out.string(image.name);
-  out.string(image.mask_name);
-  for (const std::uint32_t id : {image.platform, image.camera, image.pose, image.id}) out.write(id);
-  for (const float depth : {image.min_depth, image.average_depth, image.max_depth})
-    out.write(depth);
-  out.count(image.view_scores.size());
-  for (const ViewScore& score : image.view_scores) {
-    out.write(score.image);
-    out.write(score.points);
-    for (const float value : {score.scale, score.angle, score.area, score.score}) out.write(value);
-  }
-}
-
-void write_vertex(ByteWriter& out, const SparsePoint& point) {
-  write_vector(out, point.position);
-  out.count(point.views.size());
-  for (const SparseView& view : point.views) {
-    out.write(view.image);
-    out.write(view.confidence);
-  }
 }
 
 }  // namespace
@@ -247,22 +266,8 @@ std::string format_mvs(const MvsFile& mvs, std::size_t room) {
   out.text("MVSI");
   out.write(kMvsVersion);
   out.write(std::uint32_t{0});
-  out.count(mvs.platforms.size());
-  for (const MvsPlatform& platform : mvs.platforms) write_platform(out, platform);
-  out.count(mvs.images.size());
-  for (const MvsImage& image : mvs.images) write_image(out, image);
-  out.count(mvs.points.size());
-  for (const SparsePoint& point : mvs.points) write_vertex(out, point);
-  out.count(mvs.normals.size());
-  for (const Eigen::Vector3f& normal : mvs.normals) write_vector(out, normal);
-  out.count(mvs.colors.size());
-  for (const Rgb& color : mvs.colors)
-    for (const std::size_t channel : {2u, 1u, 0u}) out.write(color[channel]);
-  for (int i = 0; i < 3; ++i) out.count(0);                        // lines, linesNormal, linesColor
-  for (int i = 0; i < 16; ++i) out.write(i % 5 == 0 ? 1.0 : 0.0);  // transform: identity
-  write_matrix(out, mvs.box.rotation);
-  write_vector(out, mvs.box.min);
-  write_vector(out, mvs.box.max);
+  MvsWriter file(out);
+  fields(file, mvs);
   return out.take();
 }
 

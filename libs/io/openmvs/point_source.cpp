@@ -7,12 +7,35 @@
 #include "base/error.h"
 #include "base/heap_bytes.h"
 #include "base/log.h"
-#include "io/openmvs/mesh_of_scene.h"
 #include "io/ply/ply.h"
 #include "io/textured/textured_mesh.h"
 #include "private/ply/ply_header.h"
 
 namespace axial::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+// True if the origin of the stored coordinates is nearer than that of the frame. `stored`: without
+// an offset.
+bool is_near(const LocalFrame& frame, const Eigen::Vector3d& stored) {
+  return stored.norm() < frame.to_local(stored).norm();
+}
+
+}  // namespace
+
+bool is_without_offset(const LocalFrame& frame, const fs::path& path) {
+  if (frame.is_world()) return false;
+  const MeshPlace place = mesh_place(path);
+  return place.frame.is_world() && is_near(frame, place.first_vertex);
+}
+
+void tell_lost_offset(const fs::path& file, const LocalFrame& frame) {
+  log_info(
+      "{}: states no offset; its coordinates count from the scene's offset {:.0f} {:.0f} {:.0f}",
+      file.string(), frame.origin.x(), frame.origin.y(), frame.origin.z());
+}
+
 namespace {
 
 SparsePoint sparse_point(const PointCloud& cloud, std::size_t i, std::size_t image_count,
@@ -38,6 +61,10 @@ bool is_silently_in(const LocalFrame& frame, const std::filesystem::path& file) 
 }
 
 }  // namespace
+
+TexturedMesh read_textured_mesh_of_scene(const LocalFrame& frame, const fs::path& path) {
+  return is_silently_in(frame, path) ? read_textured_mesh(path) : read_textured_mesh(path, frame);
+}
 
 PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::path& ply) {
   return is_silently_in(frame, ply) ? read_cloud_ply(ply) : read_cloud_ply(ply, frame);

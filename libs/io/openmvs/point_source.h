@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads clouds and meshes that belong to a scene. Users name these files with the options -p and -m
-// of OpenMVS's programs.
+// Reads clouds and meshes that belong to a scene, also those that lost their offset. Users name
+// these files with the options -p and -m of OpenMVS's programs.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,7 @@
 #include "scene/mesh.h"
 #include "scene/point_cloud.h"
 #include "scene/scene.h"
+#include "scene/textured_mesh.h"
 
 namespace axial::io {
 
@@ -23,7 +24,7 @@ namespace axial::io {
 // the origin of the stored positions. A comment geo_offset 0 0 0 counts as no comment. Without a
 // comment the frame of the stored positions is guessed, because OpenMVS's programs write
 // coordinates in the frame of their input but drop the comment geo_offset. The guess is that
-// of is_without_offset() (mesh_of_scene.h), and the log states it if it is `frame`.
+// of is_without_offset(), and the log states it if it is `frame`.
 //
 // Errors as for read_cloud_ply and read_shape.
 PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
@@ -65,5 +66,21 @@ struct PointSourceCounts {
 // be read and for a malformed file. In these cases use_point_cloud reports the reason.
 std::optional<PointSourceCounts> count_point_cloud(const std::filesystem::path& ply,
                                                    const MvsCounts& scene);
+
+// The rule for meshes and clouds that state no offset. Editors and other programs drop the offset,
+// and write either local coordinates or world coordinates. Returns true if the positions of the
+// file are in `frame` although the file states no offset: if the first stored position is nearer to
+// the origin of its coordinates than to the origin of `frame` in the world. False if `frame` is the
+// world, and for a file without vertices. `path`: PLY, OBJ, GLB or glTF. Errors as for the readers
+// of these formats.
+bool is_without_offset(const LocalFrame& frame, const std::filesystem::path& path);
+
+// States in the log that the positions of `file` count as positions in the frame of its scene.
+void tell_lost_offset(const std::filesystem::path& file, const LocalFrame& frame);
+
+// Reads a mesh with its textures as read_textured_mesh() does (io/textured/textured_mesh.h). The
+// frame of the positions is that of read_mesh_of_scene(), which reads the shape alone.
+TexturedMesh read_textured_mesh_of_scene(const LocalFrame& frame,
+                                         const std::filesystem::path& path);
 
 }  // namespace axial::io

@@ -11,35 +11,23 @@
 namespace axial::io {
 namespace {
 
-std::optional<PlyType> type_named(std::string_view name) {
-  static constexpr std::array<std::pair<std::string_view, PlyType>, 16> kNames{{
-      {"char", PlyType::kInt8},
-      {"int8", PlyType::kInt8},  //
-      {"uchar", PlyType::kUint8},
-      {"uint8", PlyType::kUint8},  //
-      {"short", PlyType::kInt16},
-      {"int16", PlyType::kInt16},  //
-      {"ushort", PlyType::kUint16},
-      {"uint16", PlyType::kUint16},  //
-      {"int", PlyType::kInt32},
-      {"int32", PlyType::kInt32},  //
-      {"uint", PlyType::kUint32},
-      {"uint32", PlyType::kUint32},  //
-      {"float", PlyType::kFloat32},
-      {"float32", PlyType::kFloat32},  //
-      {"double", PlyType::kFloat64},
-      {"float64", PlyType::kFloat64},
-  }};
-  for (const auto& [known, type] : kNames)
-    if (known == name) return type;
-  return {};
-}
+// The names of each PlyType.
+constexpr std::array<std::array<std::string_view, 2>, 8> kTypes{{{"char", "int8"},
+                                                                 {"uchar", "uint8"},
+                                                                 {"short", "int16"},
+                                                                 {"ushort", "uint16"},
+                                                                 {"int", "int32"},
+                                                                 {"uint", "uint32"},
+                                                                 {"float", "float32"},
+                                                                 {"double", "float64"}}};
 
 PlyType parse_type(TextLine& line, std::string_view field) {
   const std::string_view name = line.word(field);
-  const auto type = type_named(name);
-  if (!type) fail("{}: {} is '{}', which is not a PLY type", line.where(), field, name);
-  return *type;
+  const auto type = std::ranges::find_if(
+      kTypes, [&](const auto& names) { return names[0] == name || names[1] == name; });
+  if (type == kTypes.end())
+    fail("{}: {} is '{}', which is not a PLY type", line.where(), field, name);
+  return static_cast<PlyType>(type - kTypes.begin());
 }
 
 bool is_float(PlyType type) {
@@ -97,24 +85,6 @@ std::uint64_t min_row_bytes(const PlyElement& element, PlyFormat format) {
 }
 
 }  // namespace
-
-std::size_t ply_size(PlyType type) {
-  switch (type) {
-    case PlyType::kInt8:
-    case PlyType::kUint8:
-      return 1;
-    case PlyType::kInt16:
-    case PlyType::kUint16:
-      return 2;
-    case PlyType::kInt32:
-    case PlyType::kUint32:
-    case PlyType::kFloat32:
-      return 4;
-    case PlyType::kFloat64:
-      return 8;
-  }
-  return 8;
-}
 
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& file) {
   const std::string_view text = without_byte_order_mark(bytes);
@@ -187,44 +157,23 @@ T PlyBody::binary(const std::string& name) {
 double PlyBody::ascii(PlyType type, const std::string& name) {
   const std::string_view token = take_token(text_);
   if (token.empty()) fail("{}: truncated: no more values at {}", reader_.file(), name);
-  static constexpr std::array<std::pair<double, double>, 6> kRanges{{{-128.0, 127.0},
-                                                                     {0.0, 255.0},
-                                                                     {-32768.0, 32767.0},
-                                                                     {0.0, 65535.0},
-                                                                     {-2147483648.0, 2147483647.0},
-                                                                     {0.0, 4294967295.0}}};
   const std::optional<double> parsed = parse_number<double>(token);
   const double value = parsed.value_or(0);
-  bool good = parsed.has_value();
-  if (good && !is_float(type)) {
-    const auto [lowest, highest] = kRanges[static_cast<std::size_t>(type)];
-    good = value >= lowest && value <= highest && value == std::trunc(value);
-  }
+  const bool good =
+      parsed && with_ply_type(type, [&](auto zero) {
+        using Limits = std::numeric_limits<decltype(zero)>;
+        return !Limits::is_integer ||
+               (value >= static_cast<double>(Limits::lowest()) &&
+                value <= static_cast<double>(Limits::max()) && value == std::trunc(value));
+      });
   if (!good) fail("{}: {} is '{}', which is not a value of its type", reader_.file(), name, token);
   return value;
 }
 
 double PlyBody::scalar(PlyType type, const std::string& name) {
   if (format_ == PlyFormat::kAscii) return ascii(type, name);
-  switch (type) {
-    case PlyType::kInt8:
-      return binary<std::int8_t>(name);
-    case PlyType::kUint8:
-      return binary<std::uint8_t>(name);
-    case PlyType::kInt16:
-      return binary<std::int16_t>(name);
-    case PlyType::kUint16:
-      return binary<std::uint16_t>(name);
-    case PlyType::kInt32:
-      return binary<std::int32_t>(name);
-    case PlyType::kUint32:
-      return binary<std::uint32_t>(name);
-    case PlyType::kFloat32:
-      return static_cast<double>(binary<float>(name));
-    case PlyType::kFloat64:
-      return binary<double>(name);
-  }
-  fail("{}: {} has no type", reader_.file(), name);
+  return with_ply_type(
+      type, [&](auto zero) { return static_cast<double>(binary<decltype(zero)>(name)); });
 }
 
 std::size_t PlyBody::list_size(const PlyProperty& property) {

@@ -15,8 +15,8 @@ void for_each_vertex(PlyStream& stream, const std::function<bool(PlyBody&)>& rea
   if (!vertices) fail("{}: has no element vertex", stream.file());
   for (const PlyElement& element : stream.header().elements) {
     if (&element == vertices) return stream.for_each_row(read);
-    stream.for_each_row([&](PlyBody& body) {
-      skip_row(body, element);
+    stream.for_each_row([rows = PlyRows(element)](PlyBody& body) {
+      rows.read(body);
       return true;
     });
   }

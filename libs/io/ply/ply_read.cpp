@@ -21,30 +21,24 @@ PointCloud read_vertices(PlyBody& body, const PlyElement& element, const std::st
 
 void read_faces(PlyBody& body, const PlyElement& element, const std::string& file, Mesh& mesh) {
   body.require_rows(element);
-  std::size_t corners_at = find_property(element, "vertex_indices", true);
-  if (corners_at == kNoProperty) corners_at = find_property(element, "vertex_index", true);
-  if (corners_at == kNoProperty && element.count > 0)
-    fail("{}: element face has no list vertex_indices", file);
-  const std::size_t unseen_at = find_property(element, "unseen", false);
-  if (unseen_at != kNoProperty) mesh.unseen.resize(mesh.faces.size());  // strips have no marks
-  mesh.faces.reserve(mesh.faces.size() + element.count);
+  PlyRows rows(element);
   std::vector<double> corners;
   double unseen = 0;
+  if (!rows.store("vertex_indices", corners) && !rows.store("vertex_index", corners) &&
+      element.count > 0)
+    fail("{}: element face has no list vertex_indices", file);
+  const bool marked = rows.store("unseen", unseen);
+  if (marked) mesh.unseen.resize(mesh.faces.size());  // strips have no marks
+  mesh.faces.reserve(mesh.faces.size() + element.count);
   for (std::size_t i = 0; i < element.count; ++i) {
-    for (std::size_t p = 0; p < element.properties.size(); ++p) {
-      const PlyProperty& property = element.properties[p];
-      if (property.is_list)
-        read_list(body, property, p == corners_at ? &corners : nullptr);
-      else if (const double value = body.scalar(property.type, property.name); p == unseen_at)
-        unseen = value;
-    }
+    rows.read(body);
     if (corners.size() < 3)
       fail("{}: face {} has {} corners, at least 3 are needed", file, i, corners.size());
     for (std::size_t k = 2; k < corners.size(); ++k)
       mesh.faces.push_back({as_index(corners[0], "vertex_indices", i, file),
                             as_index(corners[k - 1], "vertex_indices", i, file),
                             as_index(corners[k], "vertex_indices", i, file)});
-    if (unseen_at != kNoProperty) mesh.unseen.resize(mesh.faces.size(), unseen != 0);
+    if (marked) mesh.unseen.resize(mesh.faces.size(), unseen != 0);
   }
 }
 
@@ -52,14 +46,11 @@ void read_faces(PlyBody& body, const PlyElement& element, const std::string& fil
 // second triangle of a strip has its corners in the opposite order.
 void read_strips(PlyBody& body, const PlyElement& element, const std::string& file, Mesh& mesh) {
   body.require_rows(element);
-  const std::size_t corners_at = find_property(element, "vertex_indices", true);
+  PlyRows rows(element);
   std::vector<double> corners;
+  rows.store("vertex_indices", corners);
   for (std::size_t i = 0; i < element.count; ++i) {
-    for (std::size_t p = 0; p < element.properties.size(); ++p)
-      if (const PlyProperty& property = element.properties[p]; property.is_list)
-        read_list(body, property, p == corners_at ? &corners : nullptr);
-      else
-        body.scalar(property.type, property.name);
+    rows.read(body);
     std::vector<std::uint32_t> strip;
     for (const double corner : corners) {
       if (corner == -1) {
@@ -84,33 +75,41 @@ void check_faces(const Mesh& mesh, const std::string& file) {
              mesh.vertices.size());
 }
 
-PointCloud read_cloud(const std::filesystem::path& path, const LocalFrame* frame) {
-  const std::string file = path.string();
-  const std::string bytes = read_file(path);
-  const PlyHeader header = parse_ply_header(bytes, file);
+// Reads the elements of a file in their order: read(body, element) reads the rows of one.
+template <class Read>
+void read_elements(const std::string& bytes, const std::string& file, const PlyHeader& header,
+                   Read read) {
   if (!find_element(header, "vertex")) fail("{}: has no element vertex", file);
   PlyBody body(bytes, file, header);
+  for (const PlyElement& element : header.elements) read(body, element);
+  body.require_end();
+}
+
+PointCloud read_cloud(const std::filesystem::path& path, const LocalFrame* frame) {
+  const std::string file = path.string(), bytes = read_file(path);
+  const PlyHeader header = parse_ply_header(bytes, file);
   PointCloud cloud;
-  for (const PlyElement& element : header.elements) {
+  read_elements(bytes, file, header, [&](PlyBody& body, const PlyElement& element) {
     if (&element == find_element(header, "vertex"))
       cloud = read_vertices(body, element, file, shift_into(frame, header));
     else
       skip_rows(body, element);
-  }
-  body.require_end();
+  });
   return cloud;
 }
 
-Mesh read_mesh(const std::filesystem::path& path, const LocalFrame* frame) {
-  const std::string file = path.string();
-  const std::string bytes = read_file(path);
-  const PlyHeader header = parse_ply_header(bytes, file);
-  if (!find_element(header, "vertex")) fail("{}: has no element vertex", file);
-  if (!find_element(header, "face") && !find_element(header, "tristrips"))
+void require_faces(const PlyHeader& header, const std::string& file) {
+  if (find_element(header, "vertex") && !find_element(header, "face") &&
+      !find_element(header, "tristrips"))
     fail("{}: is not a mesh: it has no element face", file);
-  PlyBody body(bytes, file, header);
+}
+
+Mesh read_mesh(const std::filesystem::path& path, const LocalFrame* frame) {
+  const std::string file = path.string(), bytes = read_file(path);
+  const PlyHeader header = parse_ply_header(bytes, file);
+  require_faces(header, file);
   Mesh mesh;
-  for (const PlyElement& element : header.elements) {
+  read_elements(bytes, file, header, [&](PlyBody& body, const PlyElement& element) {
     if (&element == find_element(header, "vertex")) {
       PointCloud cloud = read_vertices(body, element, file, shift_into(frame, header));
       mesh.vertices = std::move(cloud.positions);
@@ -122,8 +121,7 @@ Mesh read_mesh(const std::filesystem::path& path, const LocalFrame* frame) {
     } else {
       skip_rows(body, element);
     }
-  }
-  body.require_end();
+  });
   check_faces(mesh, file);
   if (!mesh.unseen.empty()) mesh.unseen.resize(mesh.faces.size());  // strips have no marks
   return mesh;
@@ -145,6 +143,31 @@ Mesh read_mesh_ply(const std::filesystem::path& path) {
 
 Mesh read_mesh_ply(const std::filesystem::path& path, const LocalFrame& frame) {
   return read_mesh(path, &frame);
+}
+
+std::vector<float> read_vertex_property(const std::filesystem::path& path,
+                                        const std::string& name) {
+  const std::string file = path.string(), bytes = read_file(path);
+  const PlyHeader header = parse_ply_header(bytes, file);
+  PlyBody body(bytes, file, header);
+  std::vector<float> values;
+  for (const PlyElement& element : header.elements) {
+    if (element.name != "vertex") {
+      skip_rows(body, element);
+      continue;
+    }
+    PlyRows rows(element);
+    double value = 0;
+    if (!rows.store(name, value)) return {};
+    body.require_rows(element);
+    values.reserve(element.count);
+    for (std::uint64_t row = 0; row < element.count; ++row) {
+      rows.read(body);
+      values.push_back(static_cast<float>(value));
+    }
+    return values;
+  }
+  return values;
 }
 
 }  // namespace axial::io

@@ -27,26 +27,36 @@ const PlyElement* find_element(const PlyHeader& header, const std::string& name)
   return nullptr;
 }
 
-void read_list(PlyBody& body, const PlyProperty& property, std::vector<double>* into) {
-  if (into) into->clear();
-  const std::size_t size = body.list_size(property);
-  for (std::size_t k = 0; k < size; ++k) {
-    const double value = body.scalar(property.type, property.name);
-    if (into) into->push_back(value);
-  }
+bool PlyRows::store(const std::string& name, double& value) {
+  const std::size_t at = find_property(element_, name, false);
+  if (at != kNoProperty) targets_[at].value = &value;
+  return at != kNoProperty;
 }
 
-void skip_row(PlyBody& body, const PlyElement& element) {
-  for (const PlyProperty& property : element.properties)
-    if (property.is_list)
-      read_list(body, property, nullptr);
-    else
-      body.scalar(property.type, property.name);
+bool PlyRows::store(const std::string& name, std::vector<double>& values) {
+  const std::size_t at = find_property(element_, name, true);
+  if (at != kNoProperty) targets_[at].values = &values;
+  return at != kNoProperty;
+}
+
+void PlyRows::read(PlyBody& body) const {
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    const PlyProperty& property = element_.properties[i];
+    const auto& [to, list] = targets_[i];
+    const std::size_t values = property.is_list ? body.list_size(property) : 1;
+    if (list) list->clear();
+    for (std::size_t k = 0; k < values; ++k) {
+      const double value = body.scalar(property.type, property.name);
+      if (to) *to = value;
+      if (list) list->push_back(value);
+    }
+  }
 }
 
 void skip_rows(PlyBody& body, const PlyElement& element) {
   body.require_rows(element);
-  for (std::uint64_t i = 0; i < element.count; ++i) skip_row(body, element);
+  const PlyRows rows(element);
+  for (std::uint64_t i = 0; i < element.count; ++i) rows.read(body);
 }
 
 std::uint32_t as_index(double value, const char* field, std::size_t row, const std::string& file) {
@@ -64,41 +74,21 @@ std::optional<Eigen::Vector3d> shift_into(const LocalFrame* frame, const PlyHead
 
 VertexRows::VertexRows(const PlyElement& element, std::string file,
                        const std::optional<Eigen::Vector3d>& shift)
-    : element_(element),
-      file_(std::move(file)),
-      shift_(shift),
-      slot_of_(element.properties.size(), kNoProperty) {
+    : file_(std::move(file)), shift_(shift), rows_(element) {
   for (std::size_t slot = 0; slot < kSlots; ++slot) {
-    std::size_t i = find_property(element, kNames[slot], false);
-    if (i == kNoProperty && slot >= kRed)
-      i = find_property(element, std::string("diffuse_") + kNames[slot], false);
-    has_[slot] = i != kNoProperty;
-    if (i != kNoProperty) slot_of_[i] = slot;
+    const std::string name = kNames[slot];
+    has_[slot] = rows_.store(name, values_[slot]) ||
+                 (slot >= kRed && rows_.store("diffuse_" + name, values_[slot]));
   }
-  indices_at_ = find_property(element, "view_indices", true);
-  weights_at_ = find_property(element, "view_weights", true);
+  has_views_ = rows_.store("view_indices", indices_);
+  has_weights_ = rows_.store("view_weights", weights_);
   if (!has(kX)) fail("{}: element vertex has no x, y or z", file_);
 }
 
 PointCloud VertexRows::empty_cloud() const {
   PointCloud cloud;
-  if (has_views()) cloud.view_begin.push_back(0);
+  if (has_views_) cloud.view_begin.push_back(0);
   return cloud;
-}
-
-void VertexRows::read_values(PlyBody& body) {
-  for (std::size_t i = 0; i < element_.properties.size(); ++i) {
-    const PlyProperty& property = element_.properties[i];
-    if (property.is_list) {
-      read_list(body, property,
-                i == indices_at_   ? &indices_
-                : i == weights_at_ ? &weights_
-                                   : nullptr);
-    } else {
-      const double value = body.scalar(property.type, property.name);
-      if (slot_of_[i] != kNoProperty) values_[slot_of_[i]] = value;
-    }
-  }
 }
 
 // Integer colours are in 0..255; some writers store floats in [0, 255]. Values outside are clamped.
@@ -112,18 +102,18 @@ Rgb VertexRows::color() const {
 }
 
 void VertexRows::append_views(PointCloud& cloud) const {
-  if (has_weights() && weights_.size() != indices_.size())
+  if (has_weights_ && weights_.size() != indices_.size())
     fail("{}: vertex {} has {} view_indices but {} view_weights", file_, row_, indices_.size(),
          weights_.size());
   for (const double value : indices_)
     cloud.view_images.push_back(as_index(value, "view_indices", row_, file_));
-  if (has_weights())
+  if (has_weights_)
     for (const double value : weights_) cloud.view_weights.push_back(static_cast<float>(value));
   cloud.view_begin.push_back(cloud.view_images.size());
 }
 
 void VertexRows::read(PlyBody& body, PointCloud& cloud) {
-  read_values(body);
+  rows_.read(body);
   cloud.positions.push_back((shift_ ? (numbers(kX) + *shift_).eval() : numbers(kX)).cast<float>());
   require_finite(cloud.positions.back(), "position", row_, file_);
   if (has(kNx)) {
@@ -131,7 +121,7 @@ void VertexRows::read(PlyBody& body, PointCloud& cloud) {
     require_finite(cloud.normals.back(), "normal", row_, file_);
   }
   if (has(kRed)) cloud.colors.push_back(color());
-  if (has_views()) append_views(cloud);
+  if (has_views_) append_views(cloud);
   ++row_;
 }
 

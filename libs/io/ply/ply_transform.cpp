@@ -7,7 +7,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "io/openmvs/mesh_of_scene.h"
+#include "io/openmvs/point_source.h"
 #include "io/ply/ply.h"
 #include "private/bytes/byte_writer.h"
 #include "private/ply/ply_header.h"
@@ -40,24 +40,7 @@ struct Vertices {
 };
 
 void write_value(ByteWriter& out, PlyType type, double value) {
-  switch (type) {
-    case PlyType::kInt8:
-      return out.write(static_cast<std::int8_t>(value));
-    case PlyType::kUint8:
-      return out.write(static_cast<std::uint8_t>(value));
-    case PlyType::kInt16:
-      return out.write(static_cast<std::int16_t>(value));
-    case PlyType::kUint16:
-      return out.write(static_cast<std::uint16_t>(value));
-    case PlyType::kInt32:
-      return out.write(static_cast<std::int32_t>(value));
-    case PlyType::kUint32:
-      return out.write(static_cast<std::uint32_t>(value));
-    case PlyType::kFloat32:
-      return out.write(static_cast<float>(value));
-    case PlyType::kFloat64:
-      return out.write(value);
-  }
+  with_ply_type(type, [&](auto zero) { out.write(static_cast<decltype(zero)>(value)); });
 }
 
 // One row: the values of every property, one for a scalar.
@@ -140,12 +123,13 @@ Vertices vertices_of(const PlyHeader& header, const std::string& file) {
   return vertices;
 }
 
-}  // namespace
-
+// The frame of the positions of a file that belongs to a scene in `frame`.
 LocalFrame frame_of_positions(const std::filesystem::path& ply, const LocalFrame& frame) {
   const PlyPlace place = ply_place(ply);
   return is_without_offset(frame, ply) ? frame : place.frame;
 }
+
+}  // namespace
 
 void transform_ply(const std::filesystem::path& input, const std::filesystem::path& output,
                    const FrameMove& move) {

@@ -6,7 +6,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/ply/ply.h"
-#include "io/ply/ply_property.h"
 #include "private/bytes/byte_writer.h"
 
 namespace axial::io {

@@ -3,22 +3,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 
 #include "base/base64.h"
 #include "base/error.h"
+#include "base/file_extension.h"
 
 namespace axial::io {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string in_lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 bool is_file(const fs::path& path) {
   std::error_code ignored;
@@ -29,11 +23,11 @@ bool is_file(const fs::path& path) {
 std::optional<fs::path> entry_in_any_case(const fs::path& folder, const std::string& name) {
   std::optional<fs::path> found;
   std::error_code error;
-  const std::string wanted = in_lower_case(name);
+  const std::string wanted = lower_case(name);
   for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end;
        !error && entry != end; entry.increment(error)) {
     const fs::path entry_name = entry->path().filename();
-    if (in_lower_case(entry_name.string()) != wanted) continue;
+    if (lower_case(entry_name.string()) != wanted) continue;
     if (found) return {};
     found = folder / entry_name;
   }

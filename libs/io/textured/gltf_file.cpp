@@ -46,19 +46,11 @@ T value_of(std::string_view bytes, std::size_t at) {
 }
 
 std::size_t bytes_of_component(std::size_t component_type) {
-  switch (component_type) {
-    case 5120:  // int8
-    case 5121:  // uint8
-      return 1;
-    case 5122:  // int16
-    case 5123:  // uint16
-      return 2;
-    case 5125:  // uint32
-    case 5126:  // float
-      return 4;
-    default:
-      return 0;
-  }
+  constexpr std::size_t kInt8 = 5120;
+  // int8, uint8, int16, uint16, none, uint32, float
+  constexpr std::array<std::size_t, 7> kBytes{1, 1, 2, 2, 0, 4, 4};
+  const std::size_t at = component_type - kInt8;
+  return component_type >= kInt8 && at < kBytes.size() ? kBytes[at] : 0;
 }
 
 std::size_t components_of(std::string_view type) {

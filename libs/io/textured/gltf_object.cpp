@@ -28,6 +28,34 @@ std::optional<std::size_t> whole_number(const Json& json) {
   return static_cast<std::size_t>(value);
 }
 
+std::optional<double> finite_number(const Json& json) {
+  const double number = json.is_number() ? json.get<double>() : NAN;
+  return std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+std::optional<std::string> text_in(const Json& json) {
+  return json.is_string() ? std::optional(json.get<std::string>()) : std::nullopt;
+}
+
+std::optional<bool> flag_in(const Json& json) {
+  return json.is_boolean() ? std::optional(json.get<bool>()) : std::nullopt;
+}
+
+// The items of a list, each read by `item`.
+template <class Item>
+auto list_of(std::optional<Item> (*item)(const Json&)) {
+  return [item](const Json& json) -> std::optional<std::vector<Item>> {
+    std::vector<Item> items;
+    if (!json.is_array() && !json.empty()) return {};
+    for (const Json& entry : json) {
+      const std::optional<Item> one = item(entry);
+      if (!one) return {};
+      items.push_back(*one);
+    }
+    return items;
+  };
+}
+
 }  // namespace
 
 GltfObject::GltfObject(const std::string& file, std::string name, const Json& json)
@@ -44,14 +72,18 @@ const Json* GltfObject::value(const char* key) const {
   return found == json_->end() ? nullptr : &*found;
 }
 
-std::optional<std::size_t> GltfObject::index(const char* key) const {
+template <class Read>
+auto GltfObject::read(const char* key, std::string_view kind, Read take) const
+    -> decltype(take(*json_)) {
   const Json* json = value(key);
   if (!json) return {};
-  const auto number = whole_number(*json);
-  if (!number)
-    fail("{}: {}.{} is {}, which is not a whole number of at least 0", *file_, name_, key,
-         shortened(*json));
-  return number;
+  auto result = take(*json);
+  if (!result) fail("{}: {}.{} is {}, which is not {}", *file_, name_, key, shortened(*json), kind);
+  return result;
+}
+
+std::optional<std::size_t> GltfObject::index(const char* key) const {
+  return read(key, "a whole number of at least 0", whole_number);
 }
 
 std::size_t GltfObject::needed_index(const char* key) const {
@@ -61,67 +93,35 @@ std::size_t GltfObject::needed_index(const char* key) const {
 }
 
 std::vector<std::size_t> GltfObject::indices(const char* key) const {
-  std::vector<std::size_t> result;
-  const Json* json = value(key);
-  if (!json) return result;
-  for (const Json& entry : *json) {
-    const auto number = json->is_array() ? whole_number(entry) : std::nullopt;
-    if (!number)
-      fail("{}: {}.{} is {}, which is not a list of whole numbers of at least 0", *file_, name_,
-           key, shortened(*json));
-    result.push_back(*number);
-  }
-  return result;
+  return read(key, "a list of whole numbers of at least 0", list_of(whole_number))
+      .value_or(std::vector<std::size_t>());
 }
 
 std::optional<double> GltfObject::number(const char* key) const {
-  const Json* json = value(key);
-  if (!json) return {};
-  const double number = json->is_number() ? json->get<double>() : NAN;
-  if (!std::isfinite(number))
-    fail("{}: {}.{} is {}, which is not a number", *file_, name_, key, shortened(*json));
-  return number;
+  return read(key, "a number", finite_number);
 }
 
 std::vector<double> GltfObject::numbers(const char* key, std::size_t size) const {
-  std::vector<double> result;
-  const Json* json = value(key);
-  if (!json) return result;
-  if (json->is_array())
-    for (const Json& entry : *json)
-      if (entry.is_number() && std::isfinite(entry.get<double>()))
-        result.push_back(entry.get<double>());
-  if (!json->is_array() || result.size() != json->size() || (size > 0 && result.size() != size))
-    fail("{}: {}.{} is {}, which is not a list of {}numbers", *file_, name_, key, shortened(*json),
-         size > 0 ? fmt::format("{} ", size) : "");
-  return result;
+  const auto list_of_size = [size](const Json& json) {
+    auto list = list_of(finite_number)(json);
+    if (!json.is_array() || (list && size > 0 && list->size() != size)) list.reset();
+    return list;
+  };
+  const std::string kind =
+      size > 0 ? fmt::format("a list of {} numbers", size) : "a list of numbers";
+  return read(key, kind, list_of_size).value_or(std::vector<double>());
 }
 
 std::optional<std::string> GltfObject::text(const char* key) const {
-  const Json* json = value(key);
-  if (!json) return {};
-  if (!json->is_string())
-    fail("{}: {}.{} is {}, which is not a text", *file_, name_, key, shortened(*json));
-  return json->get<std::string>();
+  return read(key, "a text", text_in);
 }
 
 std::vector<std::string> GltfObject::texts(const char* key) const {
-  std::vector<std::string> result;
-  const Json* json = value(key);
-  if (!json) return result;
-  if (!json->is_array()) fail("{}: {}.{} is not a list", *file_, name_, key);
-  for (const Json& entry : *json) {
-    if (!entry.is_string()) fail("{}: {}.{} is not a list of texts", *file_, name_, key);
-    result.push_back(entry.get<std::string>());
-  }
-  return result;
+  return read(key, "a list of texts", list_of(text_in)).value_or(std::vector<std::string>());
 }
 
 bool GltfObject::flag(const char* key) const {
-  const Json* json = value(key);
-  if (json && !json->is_boolean())
-    fail("{}: {}.{} is {}, which is not true or false", *file_, name_, key, shortened(*json));
-  return json && json->get<bool>();
+  return read(key, "true or false", flag_in).value_or(false);
 }
 
 std::optional<GltfObject> GltfObject::object(const char* key) const {

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "private/textured/file_names.h"
 
 namespace axial::io {
@@ -35,13 +35,6 @@ std::optional<TextLine> ObjLines::next() {
 }
 
 namespace {
-
-std::string in_lower_case_letters(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
 
 // Takes up to `most` numbers from the beginning of `line`; the file name follows them.
 std::vector<double> take_numbers(TextLine& line, std::size_t most) {
@@ -84,7 +77,7 @@ void set_pair(Eigen::Vector2d& pair, const std::vector<double>& numbers, const T
 
 void read_map_option(const MapOption& option, TextLine& line, ObjMaterial& material) {
   if (option.word) {
-    const std::string value = in_lower_case_letters(line.word(option.name));
+    const std::string value = lower_case(std::string(line.word(option.name)));
     if (value != "on" && value != "off")
       fail("{}: {} is '{}', expected on or off", line.where(), option.name, value);
     if (option.name == "-clamp" && value == "on") material.texture->wrap.fill(Wrap::clamp);
@@ -105,7 +98,7 @@ void read_map(TextLine line, const fs::path& folder, ObjMaterial& material) {
   material.offset = {0, 0};
   while (!line.empty()) {
     TextLine after = line;
-    const std::string name = in_lower_case_letters(after.word("option"));
+    const std::string name = lower_case(std::string(after.word("option")));
     const auto option = std::ranges::find(kMapOptions, name, &MapOption::name);
     if (option == kMapOptions.end()) break;
     line = after;
@@ -137,7 +130,7 @@ std::vector<ObjMaterial> read_obj_materials(const fs::path& mtl) {
   ObjLines lines(bytes, mtl.string());
   std::vector<ObjMaterial> materials;
   while (std::optional<TextLine> line = lines.next()) {
-    const std::string key = in_lower_case_letters(line->word("key"));
+    const std::string key = lower_case(std::string(line->word("key")));
     if (key == "newmtl") materials.emplace_back().name = line->rest();
     if (materials.empty()) continue;
     if (key == "map_kd") read_map(*line, mtl.parent_path(), materials.back());

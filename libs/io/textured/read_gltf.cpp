@@ -18,15 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class GltfParts { shape, textured, sizes };  // sizes: textured, without decoding pictures
-
 class GltfReader {
  public:
-  GltfReader(const fs::path& path, GltfParts parts)
+  GltfReader(const fs::path& path, MeshParts parts)
       : file_(path),
         scene_(scene_of(file_)),
-        textured_(parts != GltfParts::shape),
-        textures_(file_.name(), parts == GltfParts::textured) {}
+        textured_(parts != MeshParts::shape),
+        textures_(file_.name(), parts == MeshParts::textured) {}
 
   TexturedMesh read(const std::optional<LocalFrame>& frame) {
     make_room();
@@ -115,16 +113,15 @@ class GltfReader {
     }
     std::vector<Eigen::Vector2d> uv;  // from the upper edge
     if (material.image) uv = coordinates_of(file_, primitive, material, vertices);
-    std::string problem;
     for (const std::array<std::uint32_t, 3>& face : faces) {
       std::array<Eigen::Vector2d, 3> corners{{{0, 0}, {1, 0}, {0, 1}}};
       for (std::size_t k = 0; k < 3 && material.image; ++k) {
         const Eigen::Vector2d& at = uv[face[mirrored ? (3 - k) % 3 : k]];
         corners[k] = {at.x(), 1 - at.y()};
       }
-      result_.uv.push_back(textures_.place(texture, corners, problem));
-      if (!problem.empty()) fail("{}: a face of {} {}", file_.name(), primitive.name, problem);
-      result_.texture_of.push_back(texture);
+      textures_.add_face(result_, texture, corners, [&] {
+        return fmt::format("{}: a face of {}", file_.name(), primitive.name);
+      });
     }
   }
 
@@ -140,18 +137,12 @@ class GltfReader {
   TexturedMesh result_;
 };
 
-}  // namespace
-
-TexturedMesh read_textured_gltf(const fs::path& path, const std::optional<LocalFrame>& frame) {
-  return GltfReader(path, GltfParts::textured).read(frame);
-}
-
 Mesh read_shape_gltf(const fs::path& path, const std::optional<LocalFrame>& frame) {
-  return std::move(GltfReader(path, GltfParts::shape).read(frame).mesh);
+  return std::move(GltfReader(path, MeshParts::shape).read(frame).mesh);
 }
 
 std::uint64_t bytes_of_gltf_textures(const fs::path& path) {
-  GltfReader reader(path, GltfParts::sizes);
+  GltfReader reader(path, MeshParts::sizes);
   reader.read({});
   return reader.textures().bytes();
 }
@@ -202,5 +193,15 @@ TextureFiles texture_files_of_gltf(const fs::path& path) {
   }
   return files;
 }
+
+}  // namespace
+
+TexturedMesh read_textured_gltf(const fs::path& path, const std::optional<LocalFrame>& frame) {
+  return GltfReader(path, MeshParts::textured).read(frame);
+}
+
+const MeshFormat kGltfMeshes{read_textured_gltf,    read_shape_gltf, is_textured_gltf,
+                             texture_files_of_gltf, place_of_gltf,   bytes_of_gltf_textures,
+                             bytes_to_read_gltf};
 
 }  // namespace axial::io

@@ -11,36 +11,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class MeshFormat { ply, obj, gltf };
-
-MeshFormat format_of(const fs::path& path) {
+const MeshFormat& format_of(const fs::path& path) {
   const std::string extension = lower_extension(path);
-  if (extension == ".obj") return MeshFormat::obj;
-  return extension == ".glb" || extension == ".gltf" ? MeshFormat::gltf : MeshFormat::ply;
-}
-
-// Calls the function of the format.
-template <class Ply, class Obj, class Gltf>
-auto by_format(const fs::path& path, const Ply& ply, const Obj& obj, const Gltf& gltf) {
-  switch (format_of(path)) {
-    case MeshFormat::obj:
-      return obj(path);
-    case MeshFormat::gltf:
-      return gltf(path);
-    case MeshFormat::ply:
-      break;
-  }
-  return ply(path);
+  if (extension == ".obj") return kObjMeshes;
+  return extension == ".glb" || extension == ".gltf" ? kGltfMeshes : kPlyMeshes;
 }
 
 }  // namespace
 
 bool is_textured_mesh(const fs::path& path) {
-  return by_format(path, is_textured_ply, is_textured_obj, is_textured_gltf);
+  return format_of(path).is_textured(path);
 }
 
 TextureFiles texture_files_of(const fs::path& path) {
-  return by_format(path, texture_files_of_ply, texture_files_of_obj, texture_files_of_gltf);
+  return format_of(path).texture_files(path);
 }
 
 std::vector<fs::path> files_of_mesh(const fs::path& path) {
@@ -55,31 +39,23 @@ std::vector<fs::path> files_of_mesh(const fs::path& path) {
 }
 
 std::uint64_t bytes_to_read_textures(const fs::path& path) {
-  return by_format(path, bytes_of_ply_textures, bytes_of_obj_textures, bytes_of_gltf_textures);
+  return format_of(path).bytes_of_textures(path);
 }
 
 std::uint64_t bytes_to_read_mesh(const fs::path& path) {
-  return by_format(path, bytes_to_read_ply, bytes_to_read_obj, bytes_to_read_gltf);
+  return format_of(path).bytes_to_read(path);
 }
 
 MeshPlace mesh_place(const fs::path& path) {
-  return by_format(path, ply_place, place_of_obj, place_of_gltf);
+  return format_of(path).place(path);
 }
 
 Mesh read_shape(const fs::path& path, const std::optional<LocalFrame>& frame) {
-  const auto ply = [&](const fs::path& file) {
-    return frame ? read_mesh_ply(file, *frame) : read_mesh_ply(file);
-  };
-  return by_format(
-      path, ply, [&](const fs::path& file) { return read_shape_obj(file, frame); },
-      [&](const fs::path& file) { return read_shape_gltf(file, frame); });
+  return format_of(path).read_shape(path, frame);
 }
 
 TexturedMesh read_textured_mesh(const fs::path& path, const std::optional<LocalFrame>& frame) {
-  return by_format(
-      path, [&](const fs::path& file) { return read_textured_ply(file, frame); },
-      [&](const fs::path& file) { return read_textured_obj(file, frame); },
-      [&](const fs::path& file) { return read_textured_gltf(file, frame); });
+  return format_of(path).read_textured(path, frame);
 }
 
 }  // namespace axial::io

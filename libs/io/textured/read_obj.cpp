@@ -50,15 +50,13 @@ ObjCounts count_obj_items(const fs::path& path) {
   return counts;
 }
 
-enum class ObjParts { shape, textured, sizes };  // sizes: textured, without decoding pictures
-
 class ObjReader {
  public:
-  ObjReader(const fs::path& path, ObjParts parts)
+  ObjReader(const fs::path& path, MeshParts parts)
       : path_(path),
         file_(path.string()),
-        textured_(parts != ObjParts::shape),
-        textures_(file_, parts == ObjParts::textured) {}
+        textured_(parts != MeshParts::shape),
+        textures_(file_, parts == MeshParts::textured) {}
 
   TexturedMesh read(const std::optional<LocalFrame>& frame) {
     const std::string bytes = read_file(path_);
@@ -227,12 +225,9 @@ class ObjReader {
         uv[k] = used.material.scale.cwiseProduct(uv_[*corners[k].uv]) + used.material.offset;
       }
     } else if (!used.texture) {
-      used.texture = textures_.add(texture_of_color(used.material.color));
+      used.texture = textures_.add({.color = used.material.color});
     }
-    std::string problem;
-    result_.uv.push_back(textures_.place(*used.texture, uv, problem));
-    if (!problem.empty()) fail("{}: the face {}", line.where(), problem);
-    result_.texture_of.push_back(*used.texture);
+    textures_.add_face(result_, *used.texture, uv, [&] { return line.where() + ": the face"; });
   }
 
   void use_material(const TextLine& line) {
@@ -263,18 +258,12 @@ class ObjReader {
   TexturedMesh result_;
 };
 
-}  // namespace
-
-TexturedMesh read_textured_obj(const fs::path& path, const std::optional<LocalFrame>& frame) {
-  return ObjReader(path, ObjParts::textured).read(frame);
-}
-
 Mesh read_shape_obj(const fs::path& path, const std::optional<LocalFrame>& frame) {
-  return std::move(ObjReader(path, ObjParts::shape).read(frame).mesh);
+  return std::move(ObjReader(path, MeshParts::shape).read(frame).mesh);
 }
 
 std::uint64_t bytes_of_obj_textures(const fs::path& path) {
-  ObjReader reader(path, ObjParts::sizes);
+  ObjReader reader(path, MeshParts::sizes);
   reader.read({});
   return reader.textures().bytes();
 }
@@ -291,56 +280,69 @@ std::uint64_t bytes_to_read_obj(const fs::path& path) {
          kFace * counts.faces;
 }
 
-bool is_textured_obj(const fs::path& path) {
+// Calls use(key, line) for each line of the file.
+template <class Use>
+void for_each_line(const fs::path& path, Use use) {
   const std::string bytes = read_file(path);
   ObjLines lines(bytes, path.string());
-  bool coordinates = false, textures = false;
   while (std::optional<TextLine> line = lines.next()) {
     const std::string_view key = line->word("key");
+    use(key, *line);
+  }
+}
+
+bool is_textured_obj(const fs::path& path) {
+  bool coordinates = false, textures = false;
+  for_each_line(path, [&](std::string_view key, const TextLine& line) {
     coordinates |= key == "vt";
-    if (key != "mtllib") continue;
-    for (const fs::path& mtl : material_files(path.parent_path(), line->file_name()))
+    if (key != "mtllib") return;
+    for (const fs::path& mtl : material_files(path.parent_path(), line.file_name()))
       for (const ObjMaterial& material : read_obj_materials(mtl))
         textures |= material.texture.has_value();
-  }
+  });
   return coordinates && textures;
 }
 
 MeshPlace place_of_obj(const fs::path& path) {
-  const std::string bytes = read_file(path);
-  ObjLines lines(bytes, path.string());
   MeshPlace place;
   place.is_float = false;
   bool has_first = false;
-  while (std::optional<TextLine> line = lines.next()) {
-    const std::string_view key = line->word("key");
-    const bool is_offset = key == "#" && line->rest().starts_with("geo_offset ");
-    if (!is_offset && (key != "v" || has_first)) continue;
-    if (is_offset) line->word("geo_offset");
+  for_each_line(path, [&](std::string_view key, TextLine& line) {
+    const bool is_offset = key == "#" && line.rest().starts_with("geo_offset ");
+    if (!is_offset && (key != "v" || has_first)) return;
+    if (is_offset) line.word("geo_offset");
     Eigen::Vector3d& vector = is_offset ? place.frame.origin : place.first_vertex;
-    for (double& value : vector) value = line->number<double>("a coordinate");
+    for (double& value : vector) value = line.number<double>("a coordinate");
     has_first |= !is_offset;
-  }
+  });
   place.first_vertex += place.frame.origin;
   return place;
 }
 
 TextureFiles texture_files_of_obj(const fs::path& path) {
-  const std::string bytes = read_file(path);
-  ObjLines lines(bytes, path.string());
   TextureFiles files;
-  while (std::optional<TextLine> line = lines.next()) {
-    if (line->word("key") != "mtllib") continue;
-    for (const fs::path& mtl : material_files(path.parent_path(), line->file_name())) {
+  for_each_line(path, [&](std::string_view key, const TextLine& line) {
+    if (key != "mtllib") return;
+    for (const fs::path& mtl : material_files(path.parent_path(), line.file_name())) {
       files.materials.push_back(mtl);
       std::error_code ignored;
       if (!fs::exists(mtl, ignored)) continue;
       for (const ObjMaterial& material : read_obj_materials(mtl))
         if (material.texture) files.textures.push_back(material.texture->file);
     }
-  }
+  });
   return files;
 }
+
+}  // namespace
+
+TexturedMesh read_textured_obj(const fs::path& path, const std::optional<LocalFrame>& frame) {
+  return ObjReader(path, MeshParts::textured).read(frame);
+}
+
+const MeshFormat kObjMeshes{read_textured_obj,    read_shape_obj, is_textured_obj,
+                            texture_files_of_obj, place_of_obj,   bytes_of_obj_textures,
+                            bytes_to_read_obj};
 
 std::vector<Eigen::Vector3f> placed_in(const std::optional<LocalFrame>& frame,
                                        std::span<const Eigen::Vector3d> stored,

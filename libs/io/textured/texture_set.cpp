@@ -60,18 +60,6 @@ double moved_into_texture(std::array<double*, 3> values, Wrap wrap, int pixels) 
 
 }  // namespace
 
-TextureSource texture_from(const std::filesystem::path& file) {
-  TextureSource source;
-  source.file = file;
-  return source;
-}
-
-TextureSource texture_of_color(const Rgb& color) {
-  TextureSource source;
-  source.color = color;
-  return source;
-}
-
 std::uint8_t srgb_of(double linear) {
   const double value = std::clamp(linear, 0.0, 1.0);
   const double srgb = value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;

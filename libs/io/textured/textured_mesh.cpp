@@ -20,16 +20,21 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, TexturedFormat>, 4> kFormats{
-    {{"ply", TexturedFormat::ply},
-     {"obj", TexturedFormat::obj},
-     {"glb", TexturedFormat::glb},
-     {"gltf", TexturedFormat::gltf}}};
+// A format: its name, which is also its extension, the extension of the second file, and the name
+// of a texture around its number. Formats share no names of textures: each format may be written by
+// a run of its own, with other textures.
+struct FormatNames {
+  TexturedFormat format;
+  const char *name, *second, *texture_begin, *texture_end;
+};
+constexpr std::array<FormatNames, 4> kFormats{
+    {{TexturedFormat::ply, "ply", nullptr, "", ".png"},
+     {TexturedFormat::obj, "obj", ".mtl", "_material_", "_map_Kd.png"},
+     {TexturedFormat::glb, "glb", nullptr, nullptr, nullptr},
+     {TexturedFormat::gltf, "gltf", ".bin", "_gltf", ".png"}}};
 
-std::string extension_of(TexturedFormat format) {
-  for (const auto& [name, known] : kFormats)
-    if (known == format) return fmt::format(".{}", name);
-  return {};
+const FormatNames& format_names(TexturedFormat format) {
+  return *std::ranges::find(kFormats, format, &FormatNames::format);
 }
 
 void check(const TexturedMesh& mesh, const std::string& file) {
@@ -80,23 +85,11 @@ std::vector<std::string> names_of(std::span<const fs::path> files) {
   return names;
 }
 
-// The end of the name of a texture. Formats share no names: each format may be written by a run of
-// its own, with other textures.
-std::string end_of_texture(TexturedFormat format, std::size_t texture) {
-  if (format == TexturedFormat::obj) return fmt::format("_material_{}_map_Kd.png", texture);
-  return fmt::format("{}{}.png", format == TexturedFormat::gltf ? "_gltf" : "", texture);
-}
-
-// The number of files before the textures.
-std::size_t files_before_textures(TexturedFormat format) {
-  return format == TexturedFormat::ply || format == TexturedFormat::glb ? 1 : 2;
-}
-
 }  // namespace
 
 std::optional<TexturedFormat> textured_format(std::string_view name) {
-  for (const auto& [known, format] : kFormats)
-    if (known == lower_case(std::string(name))) return format;
+  for (const FormatNames& known : kFormats)
+    if (known.name == lower_case(std::string(name))) return known.format;
   return {};
 }
 
@@ -105,11 +98,12 @@ std::vector<fs::path> textured_files(const fs::path& path, TexturedFormat format
   const auto beside = [&](const std::string& end) {
     return path.parent_path() / (path.stem().string() + end);
   };
-  std::vector<fs::path> files{beside(extension_of(format))};
-  if (format == TexturedFormat::obj) files.push_back(beside(".mtl"));
-  if (format == TexturedFormat::gltf) files.push_back(beside(".bin"));
-  if (format == TexturedFormat::glb) return files;
-  for (std::size_t k = 0; k < textures; ++k) files.push_back(beside(end_of_texture(format, k)));
+  const FormatNames& names = format_names(format);
+  std::vector<fs::path> files{beside(fmt::format(".{}", names.name))};
+  if (names.second) files.push_back(beside(names.second));
+  if (!names.texture_begin) return files;
+  for (std::size_t k = 0; k < textures; ++k)
+    files.push_back(beside(fmt::format("{}{}{}", names.texture_begin, k, names.texture_end)));
   return files;
 }
 
@@ -149,7 +143,7 @@ void write_textured_as(std::span<const fs::path> temporaries, const fs::path& pa
   const std::vector<fs::path> files = textured_files(path, format, mesh.textures.size());
   const std::string file = files.front().string();
   check(mesh, file);
-  const std::size_t before = files_before_textures(format);
+  const std::size_t before = format_names(format).second ? 2 : 1;
   const std::vector<std::string> textures = names_of(std::span(files).subspan(before));
   for (std::size_t k = before; k < files.size(); ++k)
     write_bytes(temporaries[k], png_bytes(mesh.textures[k - before], file));

@@ -58,14 +58,13 @@ struct VertexCoordinates {
 };
 
 // The properties of texture coordinates at vertices: the first pair of names that exists.
-std::optional<std::array<std::size_t, 2>> vertex_coordinates(const PlyElement& vertex) {
+std::optional<std::array<const char*, 2>> vertex_coordinates(const PlyElement& vertex) {
   constexpr std::array<std::array<const char*, 2>, 4> kNames{
       {{"texture_u", "texture_v"}, {"u", "v"}, {"s", "t"}, {"texture_s", "texture_t"}}};
-  for (const auto& [u, v] : kNames) {
-    const std::array<std::size_t, 2> at{find_property(vertex, u, false),
-                                        find_property(vertex, v, false)};
-    if (at[0] != kNoProperty && at[1] != kNoProperty) return at;
-  }
+  for (const auto& names : kNames)
+    if (find_property(vertex, names[0], false) != kNoProperty &&
+        find_property(vertex, names[1], false) != kNoProperty)
+      return names;
   return {};
 }
 
@@ -85,25 +84,12 @@ struct FaceRow {
   double texture = 0;
 };
 
-void read_face_row(PlyBody& body, const PlyElement& element, FaceRow& row) {
-  for (const PlyProperty& property : element.properties) {
-    if (!property.is_list) {
-      const double value = body.scalar(property.type, property.name);
-      if (property.name == "texnumber") row.texture = value;
-    } else if (property.name == "vertex_indices" || property.name == "vertex_index") {
-      read_list(body, property, &row.corners);
-    } else {
-      read_list(body, property, property.name == "texcoord" ? &row.uv : nullptr);
-    }
-  }
-}
-
 class TexturedPlyReader {
  public:
   TexturedPlyReader(const fs::path& path, const PlyHeader& header)
       : file_(path.string()), header_(header), textures_(file_, true) {
     for (const std::string& name : header.texture_files)
-      textures_.add(texture_from(path_beside(path.parent_path(), name)));
+      textures_.add({.file = path_beside(path.parent_path(), name)});
   }
 
   TexturedMesh read(const std::string& bytes, Mesh mesh) {
@@ -131,11 +117,8 @@ class TexturedPlyReader {
            textures);
     for (const Eigen::Vector2d& corner : uv)
       if (!corner.allFinite()) fail("{}: {} {} has a texcoord that is not finite", file_, kind, f);
-    const auto number = static_cast<std::uint32_t>(texture);
-    std::string problem;
-    result_.uv.push_back(textures_.place(number, uv, problem));
-    if (!problem.empty()) fail("{}: {} {} {}", file_, kind, f, problem);
-    result_.texture_of.push_back(number);
+    textures_.add_face(result_, static_cast<std::uint32_t>(texture), uv,
+                       [&] { return fmt::format("{}: {} {}", file_, kind, f); });
   }
 
   // The triangles of a polygon are a fan, as in read_mesh_ply().
@@ -160,11 +143,13 @@ class TexturedPlyReader {
         continue;
       }
       body.require_rows(element);
+      PlyRows rows(element);
       FaceRow row;
+      if (!rows.store("vertex_indices", row.corners)) rows.store("vertex_index", row.corners);
+      rows.store("texcoord", row.uv);
+      rows.store("texnumber", row.texture);
       for (std::uint64_t i = 0; i < element.count; ++i) {
-        row.uv.clear();
-        row.texture = 0;
-        read_face_row(body, element, row);
+        rows.read(body);
         add_face(row, i);
       }
       return;
@@ -179,23 +164,21 @@ class TexturedPlyReader {
       if (&element == vertices) break;
       skip_rows(body, element);
     }
-    const auto uv = *vertex_coordinates(*vertices);
-    const std::size_t number = find_property(*vertices, "texnumber", false);
+    const auto names = *vertex_coordinates(*vertices);
+    PlyRows rows(*vertices);
+    Eigen::Vector2d uv;
+    double texture = 0;
+    rows.store(names[0], uv.x());
+    rows.store(names[1], uv.y());
+    const bool numbered = rows.store("texnumber", texture);
     body.require_rows(*vertices);
-    result.uv.resize(vertices->count);
-    if (number != kNoProperty) result.texture.resize(vertices->count);
-    for (std::size_t i = 0; i < vertices->count; ++i)
-      for (std::size_t p = 0; p < vertices->properties.size(); ++p) {
-        const PlyProperty& property = vertices->properties[p];
-        if (property.is_list) {
-          read_list(body, property, nullptr);
-          continue;
-        }
-        const double value = body.scalar(property.type, property.name);
-        if (p == uv[0]) result.uv[i].x() = value;
-        if (p == uv[1]) result.uv[i].y() = value;
-        if (p == number) result.texture[i] = value;
-      }
+    result.uv.reserve(vertices->count);
+    if (numbered) result.texture.reserve(vertices->count);
+    for (std::size_t i = 0; i < vertices->count; ++i) {
+      rows.read(body);
+      result.uv.push_back(uv);
+      if (numbered) result.texture.push_back(texture);
+    }
     return result;
   }
 
@@ -229,6 +212,8 @@ std::vector<std::string> textures_of_ply(const fs::path& path) {
   return PlyStream(path).header().texture_files;
 }
 
+namespace {
+
 bool is_textured_ply(const fs::path& path) {
   const PlyStream stream(path);
   const PlyHeader& header = stream.header();
@@ -246,7 +231,7 @@ TextureFiles texture_files_of_ply(const fs::path& path) {
 std::uint64_t bytes_of_ply_textures(const fs::path& path) {
   TextureSet textures(path.string(), false);
   for (const fs::path& texture : texture_files_of_ply(path).textures)
-    textures.add(texture_from(texture));
+    textures.add({.file = texture});
   return textures.bytes();
 }
 
@@ -269,5 +254,15 @@ std::uint64_t bytes_to_read_ply(const fs::path& path) {
   }
   return factor * file;
 }
+
+Mesh read_shape_ply(const fs::path& path, const std::optional<LocalFrame>& frame) {
+  return frame ? read_mesh_ply(path, *frame) : read_mesh_ply(path);
+}
+
+}  // namespace
+
+const MeshFormat kPlyMeshes{read_textured_ply,    read_shape_ply, is_textured_ply,
+                            texture_files_of_ply, ply_place,      bytes_of_ply_textures,
+                            bytes_to_read_ply};
 
 }  // namespace axial::io

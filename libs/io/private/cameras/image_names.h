@@ -4,12 +4,16 @@
 // other image has.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "base/error.h"
+#include "private/cameras/port_json.h"
 #include "private/only_for_io.h"
+#include "scene/scene.h"
 
 namespace axial::io {
 
@@ -37,5 +41,37 @@ std::vector<ByImage::const_iterator> entries_of_all(const ByImage& entries,
 // is the whole path of the second image.
 ByImage entries_for(const std::vector<std::string>& names, const std::vector<std::string>& paths,
                     const std::vector<std::string>& values, const std::string& otherwise);
+
+// The name that stands for no port and for no distortion.
+inline constexpr const char* kNone = "none";
+
+// Reads the text at `key`, which is kNone or a name in `defined`. `what`: "port" or "lens", for the
+// Error about another name.
+template <class Defined>
+std::string defined_name(const JsonPlace& place, const std::string& key, const Defined& defined,
+                         const char* what) {
+  std::string name = place.text(key.c_str());
+  if (name != kNone && !defined.contains(name))
+    fail("{}.{} is '{}', a {} that is not defined", place.where, key, name, what);
+  return name;
+}
+
+// Reads an object that gives ends of image names the name of a port or a lens.
+template <class Defined>
+ByImage names_by_image(const JsonPlace& place, const Defined& defined, const char* what) {
+  ByImage images;
+  for (const std::string& key : place.keys()) {
+    if (key.empty()) fail("{}: an image name is empty", place.where);
+    images[key] = defined_name(place, key, defined, what);
+  }
+  return images;
+}
+
+// Calls use(image, entry) for each image of the scene, with the entry of entries_of_all(). Warns of
+// entries that match no image. Messages start with `file`; `key` is the place of the entries in it,
+// such as "housing.images".
+using UseEntry = std::function<void(SceneImage& image, ByImage::const_iterator entry)>;
+void for_each_entry(Scene& scene, const ByImage& entries, const std::string& file,
+                    const std::string& key, const UseEntry& use);
 
 }  // namespace axial::io

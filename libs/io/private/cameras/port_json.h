@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: reads and writes a port in JSON. Housing files and the side files of depth
-// maps contain such ports.
+// Private to libs/io: reads and writes ports, their standard deviations and the distortion of
+// lenses in JSON. Housing files, lens files and the side files of depth maps contain them.
 #pragma once
 
 #include <initializer_list>
 #include <string>
+#include <vector>
 
 #include "io/bytes/json.h"
+#include "io/cameras/port_sigmas.h"
 #include "private/only_for_io.h"
+#include "refractive/lens_distortion.h"
 #include "refractive/port.h"
 #include "scene/water_surface.h"
 
@@ -24,6 +27,9 @@ struct JsonPlace {
   JsonPlace at(const std::string& key) const;  // Error if the key is missing
   double number(const char* key) const;        // Error unless a finite number
   std::string text(const char* key) const;
+  Eigen::Vector3d vector() const;         // Error unless a list of three numbers
+  std::vector<std::string> keys() const;  // Error unless an object
+  void require_version_1() const;         // Error unless the key "version" is 1
 };
 
 // The largest distance of a housing's flat port from the camera [m]. A larger value is probably in
@@ -51,5 +57,19 @@ Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where);
 // (housing.h) lists these values.
 void check_port(const refractive::Port<double>& port, const std::string& where);
 void check_water_surface(const WaterSurface& surface, const std::string& where);
+
+// Reads the object "sigma" of a port. `is_dome`: the kind of the port, on which the keys depend. A
+// number in place of a list applies to all components. Error for an unknown key and for a value
+// that is not above 0 or not possible: more than 90 degrees, 1 m, or 1 for the index.
+PortSigmas sigmas_from_json(const JsonPlace& place, bool is_dome);
+
+// Returns the object "sigma". Precondition: `sigmas` is not empty.
+nlohmann::json sigmas_to_json(const PortSigmas& sigmas);
+
+// Reads or writes a distortion (docs/formats.md). Keys that are missing keep the values of a lens
+// without distortion. Error for an unknown key, a type other than "perspective" and "fisheye", too
+// many coefficients, or a "spread" or first radial coefficient that is not positive.
+refractive::LensDistortion<double> distortion_from_json(const JsonPlace& place);
+nlohmann::json distortion_to_json(const refractive::LensDistortion<double>& distortion);
 
 }  // namespace axial::io

@@ -17,7 +17,33 @@ namespace axial::io {
 enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };
 enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
 
-std::size_t ply_size(PlyType type);
+// Calls `call` with a zero of the C++ type of `type`, and returns its result.
+template <class Call>
+auto with_ply_type(PlyType type, Call call) {
+  switch (type) {
+    case PlyType::kInt8:
+      return call(std::int8_t{});
+    case PlyType::kUint8:
+      return call(std::uint8_t{});
+    case PlyType::kInt16:
+      return call(std::int16_t{});
+    case PlyType::kUint16:
+      return call(std::uint16_t{});
+    case PlyType::kInt32:
+      return call(std::int32_t{});
+    case PlyType::kUint32:
+      return call(std::uint32_t{});
+    case PlyType::kFloat32:
+      return call(float{});
+    case PlyType::kFloat64:
+      break;
+  }
+  return call(double{});
+}
+
+inline std::size_t ply_size(PlyType type) {
+  return with_ply_type(type, [](auto zero) { return sizeof zero; });
+}
 
 struct PlyProperty {
   std::string name;

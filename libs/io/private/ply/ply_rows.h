@@ -25,11 +25,31 @@ std::size_t find_property(const PlyElement& element, const std::string& name, bo
 // The first element with this name, or null.
 const PlyElement* find_element(const PlyHeader& header, const std::string& name);
 
-// Reads a list. `into`: receives the values; null: the list is skipped.
-void read_list(PlyBody& body, const PlyProperty& property, std::vector<double>* into);
+// Reads the rows of an element, one after the other. The properties of interest are stored where
+// the caller wants them, and the other properties are skipped.
+class PlyRows {
+ public:
+  // `element` must outlive the object.
+  explicit PlyRows(const PlyElement& element)
+      : element_(element), targets_(element.properties.size()) {}
 
-// Skips one row, or all rows of an element.
-void skip_row(PlyBody& body, const PlyElement& element);
+  // Stores the property `name`, a scalar or a list, of each row that is read from now on. Returns
+  // false if the element has no such property. The target must outlive the object.
+  bool store(const std::string& name, double& value);
+  bool store(const std::string& name, std::vector<double>& values);
+
+  void read(PlyBody& body) const;
+
+ private:
+  struct Target {
+    double* value = nullptr;
+    std::vector<double>* values = nullptr;
+  };
+  const PlyElement& element_;
+  std::vector<Target> targets_;  // of each property; null: skipped
+};
+
+// Skips all rows of an element.
 void skip_rows(PlyBody& body, const PlyElement& element);
 
 // `value` as an index. Error that names the file, the field and the row if it is none.
@@ -45,6 +65,7 @@ class VertexRows {
   // `shift` is added to all positions. Error that names the file if x, y or z is missing.
   VertexRows(const PlyElement& element, std::string file,
              const std::optional<Eigen::Vector3d>& shift);
+  VertexRows(const VertexRows&) = delete;  // `rows_` refers to the members
 
   // A cloud without points that has the arrays of the element's properties.
   PointCloud empty_cloud() const;
@@ -63,24 +84,20 @@ class VertexRows {
                                                           "nz", "red", "green", "blue"};
 
   bool has(Slot first) const { return has_[first] && has_[first + 1] && has_[first + 2]; }
-  bool has_views() const { return indices_at_ != kNoProperty; }
-  bool has_weights() const { return weights_at_ != kNoProperty; }
   Eigen::Vector3d numbers(Slot first) const {
     return {values_[first], values_[first + 1], values_[first + 2]};
   }
-  void read_values(PlyBody& body);
   Rgb color() const;
   void append_views(PointCloud& cloud) const;
 
-  const PlyElement& element_;
   std::string file_;
   std::optional<Eigen::Vector3d> shift_;
-  std::vector<std::size_t> slot_of_;  // indexed by property
+  PlyRows rows_;
   std::array<bool, kSlots> has_{};
   std::array<double, kSlots> values_{};
-  std::size_t indices_at_ = kNoProperty, weights_at_ = kNoProperty;
   std::vector<double> indices_, weights_;  // lists of the last row
-  std::size_t row_ = 0;                    // number of rows read
+  bool has_views_ = false, has_weights_ = false;
+  std::size_t row_ = 0;  // number of rows read
 };
 
 }  // namespace axial::io

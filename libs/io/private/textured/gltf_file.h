@@ -46,11 +46,15 @@ class GltfObject {
   [[noreturn]] void refuse(std::string_view text) const;
 
  private:
-  const nlohmann::json* value(const char* key) const;
-
   const std::string* file_;
   std::string name_;
   const nlohmann::json* json_;
+
+  const nlohmann::json* value(const char* key) const;
+  // The value at `key`, as take(value) reads it: an optional. Nothing if the key is
+  // absent. Error if `take` returns nothing: the value is not `kind`.
+  template <class Read>
+  auto read(const char* key, std::string_view kind, Read take) const -> decltype(take(*json_));
 };
 
 // The values of an accessor. Value i has `components` numbers.

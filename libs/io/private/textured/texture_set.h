@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "private/only_for_io.h"
 #include "scene/point_cloud.h"
 #include "scene/textured_mesh.h"
@@ -23,18 +24,14 @@ enum class Wrap { repeat, mirror, clamp };
 // A texture as a file describes it: a picture in a file of its own, the bytes of a picture, or one
 // colour.
 struct TextureSource {
-  std::filesystem::path file;  // empty: no file
-  std::string bytes;           // of a picture file; empty: no bytes
-  std::string name;            // of `bytes`, for messages
-  Rgb color{255, 255, 255};    // without file and bytes
+  std::filesystem::path file{};  // empty: no file
+  std::string bytes{};           // of a picture file; empty: no bytes
+  std::string name{};            // of `bytes`, for messages
+  Rgb color{255, 255, 255};      // without file and bytes
   // Factors of red, green and blue in linear light.
   Eigen::Vector3d factor = Eigen::Vector3d::Ones();
   std::array<Wrap, 2> wrap{Wrap::clamp, Wrap::clamp};  // of u and v
 };
-
-// A picture file, and one colour.
-TextureSource texture_from(const std::filesystem::path& file);
-TextureSource texture_of_color(const Rgb& color);
 
 // A value of sRGB, 0 to 255, for a value of linear light, 0 to 1.
 std::uint8_t srgb_of(double linear);
@@ -49,14 +46,20 @@ class TextureSet {
   // Adds a texture and returns its number. Error that names the picture if it cannot be read.
   std::uint32_t add(const TextureSource& source);
 
-  // Converts the coordinates (u, v) of a face's corners to pixels of the texture; v counts from the
-  // lower edge. Precondition: u and v are finite. If the texture would have to be repeated too
-  // often, or if a coordinate does not fit into float, `problem` receives a text that can follow
-  // the name of the face. Otherwise `problem` stays empty.
-  TexturedMesh::Corners place(std::uint32_t texture, const std::array<Eigen::Vector2d, 3>& uv,
-                              std::string& problem);
+  // Appends the texture and the texture coordinates of a face to `mesh`. The coordinates (u, v) of
+  // the corners become pixels of the texture; v counts from the lower edge. Precondition: u and v
+  // are finite. Error that begins with the result of name(), the name of the face, if the texture
+  // would have to be repeated too often, or if a coordinate does not fit into float.
+  template <class Name>
+  void add_face(TexturedMesh& mesh, std::uint32_t texture, const std::array<Eigen::Vector2d, 3>& uv,
+                const Name& name) {
+    std::string problem;
+    mesh.uv.push_back(place(texture, uv, problem));
+    mesh.texture_of.push_back(texture);
+    if (!problem.empty()) fail("{} {}", name(), problem);
+  }
 
-  // Moves the textures to `mesh`, whose coordinates place() returned.
+  // Moves the textures to `mesh`, to which add_face() added the faces.
   void finish(TexturedMesh& mesh);
 
   // The memory [bytes] of the textures that finish() makes, while they are made.
@@ -71,6 +74,9 @@ class TextureSet {
   };
 
   cv::Mat3b decoded(const TextureSource& source);
+  // `problem`: receives a text that can follow the name of the face.
+  TexturedMesh::Corners place(std::uint32_t texture, const std::array<Eigen::Vector2d, 3>& uv,
+                              std::string& problem);
 
   std::string file_;
   bool decode_;

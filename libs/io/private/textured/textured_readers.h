@@ -34,22 +34,22 @@ std::vector<Eigen::Vector3f> placed_in(const std::optional<LocalFrame>& frame,
                                        const std::optional<Eigen::Vector3d>& offset,
                                        const std::string& file);
 
-// The functions of textured_mesh.h for each format. Errors as there.
-TextureFiles texture_files_of_obj(const std::filesystem::path& path);
-TextureFiles texture_files_of_gltf(const std::filesystem::path& path);
-TextureFiles texture_files_of_ply(const std::filesystem::path& path);
-bool is_textured_obj(const std::filesystem::path& path);
-bool is_textured_gltf(const std::filesystem::path& path);
-bool is_textured_ply(const std::filesystem::path& path);
-Mesh read_shape_obj(const std::filesystem::path& path, const std::optional<LocalFrame>& frame);
-Mesh read_shape_gltf(const std::filesystem::path& path, const std::optional<LocalFrame>& frame);
-MeshPlace place_of_obj(const std::filesystem::path& path);
-MeshPlace place_of_gltf(const std::filesystem::path& path);
-std::uint64_t bytes_of_obj_textures(const std::filesystem::path& path);
-std::uint64_t bytes_of_gltf_textures(const std::filesystem::path& path);
-std::uint64_t bytes_of_ply_textures(const std::filesystem::path& path);
-std::uint64_t bytes_to_read_obj(const std::filesystem::path& path);
-std::uint64_t bytes_to_read_gltf(const std::filesystem::path& path);
-std::uint64_t bytes_to_read_ply(const std::filesystem::path& path);
+// Which parts of a mesh a reader reads. `sizes`: as textured, without decoding pictures.
+enum class MeshParts { shape, textured, sizes };
+
+// The functions of textured_mesh.h for the meshes of one format. Errors as there.
+struct MeshFormat {
+  using Path = const std::filesystem::path&;
+  using Frame = const std::optional<LocalFrame>&;
+
+  TexturedMesh (*read_textured)(Path path, Frame frame);
+  Mesh (*read_shape)(Path path, Frame frame);
+  bool (*is_textured)(Path path);
+  TextureFiles (*texture_files)(Path path);
+  MeshPlace (*place)(Path path);
+  std::uint64_t (*bytes_of_textures)(Path path);
+  std::uint64_t (*bytes_to_read)(Path path);
+};
+extern const MeshFormat kPlyMeshes, kObjMeshes, kGltfMeshes;
 
 }  // namespace axial::io
