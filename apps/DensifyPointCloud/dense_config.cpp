@@ -3,11 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
 #include <optional>
-#include <set>
+#include <span>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,8 +23,6 @@
 
 namespace axial::apps {
 namespace {
-
-using densify::Settings;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -53,9 +54,9 @@ Setting point_inside_region(double& weight) {
           [&weight](double value) { weight = value < 0.5 ? 1.0 : kOutside; }};
 }
 
-std::vector<Setting> entries(Settings& settings) {
-  ViewSelectionOptions& views = settings.selection;
-  depth::PatchMatchOptions& matching = settings.matching;
+std::vector<Setting> entries(densify::Options& options) {
+  ViewSelectionOptions& views = options.views.selection;
+  densify::MatchOptions& matching = options.matching;
   return {setting("Min Views", views.min_views, 1, 1000),
           setting("Max Views", views.max_views, 1, 1000),
           setting("Min Views Trust Point", views.min_trusted_views, 1, 1000),
@@ -66,13 +67,13 @@ std::vector<Setting> entries(Settings& settings) {
           setting("Min Angle", views.min_angle, 0, 180, kDegree),
           setting("Optim Angle", views.optimal_angle, 0.1, 180, kDegree),
           setting("Max Angle", views.max_angle, 0, 180, kDegree),
-          setting("Depth Diff Threshold", settings.fusion.depth_threshold, 1e-6, 1),
-          setting("Normal Diff Threshold", settings.fusion.normal_threshold, 0, 180, kDegree),
+          setting("Depth Diff Threshold", options.fusion.depth_threshold, 1e-6, 1),
+          setting("Normal Diff Threshold", options.fusion.normal_threshold, 0, 180, kDegree),
           min_texture(matching.min_texture),
           setting("NCC Threshold Keep", matching.keep_cost, 0, 2),
           setting("Estimation Geometric Weight", matching.geometric_weight, 0, 100),
-          setting("Speckle Size", settings.speckles.min_pixels, 0, 1e9),
-          setting("Interpolate Gap Size", settings.gaps.max_gap, 0, 1e6)};
+          setting("Speckle Size", matching.speckles.min_pixels, 0, 1e9),
+          setting("Interpolate Gap Size", matching.gaps.max_gap, 0, 1e6)};
 }
 
 std::string shown(double value) {
@@ -80,35 +81,32 @@ std::string shown(double value) {
 }
 
 // Titles of OpenMVS whose values are replaced by its options, even by their defaults.
-const std::set<std::string, std::less<>>& titles_of_options() {
-  static const std::set<std::string, std::less<>> titles{"Resolution Level",
-                                                         "Max Resolution",
-                                                         "Min Resolution",
-                                                         "SubResolution levels",
-                                                         "Min Views Fuse",
-                                                         "Num Views",
-                                                         "Remove Dmaps",
-                                                         "Ignore Mask Label",
-                                                         "Optimize",
-                                                         "Estimate Colors",
-                                                         "Estimate Normals",
-                                                         "Estimation Iters",
-                                                         "Estimation Geometric Iters"};
-  return titles;
-}
+constexpr std::array kTitlesOfOptions{"Resolution Level",
+                                      "Max Resolution",
+                                      "Min Resolution",
+                                      "SubResolution levels",
+                                      "Min Views Fuse",
+                                      "Num Views",
+                                      "Remove Dmaps",
+                                      "Ignore Mask Label",
+                                      "Optimize",
+                                      "Estimate Colors",
+                                      "Estimate Normals",
+                                      "Estimation Iters",
+                                      "Estimation Geometric Iters"};
 
 // Titles of OpenMVS that have no counterpart here.
-const std::set<std::string, std::less<>>& titles_without_effect() {
-  static const std::set<std::string, std::less<>> titles{
-      "Min Views Filter",     "Min Views Filter Adjust",
-      "Filter Adjust",        "Add Corners",
-      "Init Sparse",          "Pairwise Mul",
-      "Optimizer Eps",        "Optimizer Max Iters",
-      "Random Iters",         "Random Max Scale",
-      "Random Depth Ratio",   "Random Angle1 Range",
-      "Random Angle2 Range",  "Random Smooth Depth",
-      "Random Smooth Normal", "Random Smooth Bonus"};
-  return titles;
+constexpr std::array kTitlesWithoutEffect{"Min Views Filter",     "Min Views Filter Adjust",
+                                          "Filter Adjust",        "Add Corners",
+                                          "Init Sparse",          "Pairwise Mul",
+                                          "Optimizer Eps",        "Optimizer Max Iters",
+                                          "Random Iters",         "Random Max Scale",
+                                          "Random Depth Ratio",   "Random Angle1 Range",
+                                          "Random Angle2 Range",  "Random Smooth Depth",
+                                          "Random Smooth Normal", "Random Smooth Bonus"};
+
+bool contains(std::span<const char* const> titles, std::string_view title) {
+  return std::ranges::find(titles, title) != titles.end();
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -125,16 +123,14 @@ bool is_decoration(std::string_view line) {
 
 class ConfigFile {
  public:
-  ConfigFile(std::string name, Settings& settings)
-      : name_(std::move(name)), entries_(entries(settings)) {}
+  ConfigFile(std::string name, densify::Options& options)
+      : name_(std::move(name)), entries_(entries(options)) {}
 
   void read(std::string_view text) {
-    text = without_byte_order_mark(text);
-    while (!text.empty()) {
-      const std::size_t end = std::min(text.find('\n'), text.size());
+    std::istringstream lines{std::string(without_byte_order_mark(text))};
+    for (std::string line; std::getline(lines, line);) {
       ++number_;
-      read_line(text.substr(0, end));
-      text.remove_prefix(std::min(end + 1, text.size()));
+      read_line(line);
     }
     warn();
   }
@@ -158,8 +154,8 @@ class ConfigFile {
   }
 
   void set(const std::string& title, std::string_view text) {
-    if (titles_of_options().contains(title)) return list(of_options_, title);
-    if (titles_without_effect().contains(title)) return list(without_effect_, title);
+    if (contains(kTitlesOfOptions, title)) return list(of_options_, title);
+    if (contains(kTitlesWithoutEffect, title)) return list(without_effect_, title);
     for (const Setting& setting : entries_) {
       if (title != setting.title) continue;
       const std::optional<double> value = parse_finite<double>(text);
@@ -196,12 +192,12 @@ class ConfigFile {
 
 }  // namespace
 
-void apply_dense_config(const std::filesystem::path& file, Settings& settings) {
+void apply_dense_config(const std::filesystem::path& file, densify::Options& options) {
   std::error_code error;
   if (std::filesystem::exists(file, error))
-    return ConfigFile(file.string(), settings).read(read_file(file, 1 << 20));
+    return ConfigFile(file.string(), options).read(read_file(file, 1 << 20));
   std::string text;
-  for (const Setting& setting : entries(settings))
+  for (const Setting& setting : entries(options))
     text += fmt::format("{} = {}\n", setting.title, shown(setting.get()));
   write_atomically(file, text);
   log_info("{}: did not exist, written with the values in use", file.string());

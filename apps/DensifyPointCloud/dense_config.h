@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "densify/settings.h"
+#include "densify/options.h"
 
 namespace axial::apps {
 
@@ -15,6 +15,6 @@ namespace axial::apps {
 // effect in this program, and for titles whose setting has an option. In the last case the option
 // takes precedence, as in OpenMVS. Error that names file and line for a line without '=', and for a
 // value that is no number or out of range.
-void apply_dense_config(const std::filesystem::path& file, densify::Settings& settings);
+void apply_dense_config(const std::filesystem::path& file, densify::Options& settings);
 
 }  // namespace axial::apps

@@ -13,8 +13,8 @@ namespace {
 // them.
 void say_who_may_read(const densify::Report& report, const Options& options) {
   if (report.only_pinholes) return;
-  const std::filesystem::path name = options.settings.output.filename();
-  const std::filesystem::path& exported = options.settings.pinhole_export;
+  const std::filesystem::path name = options.settings.output.scene.filename();
+  const std::filesystem::path& exported = options.settings.output.pinhole_export;
   const std::string folder = exported.empty() ? "DIR" : exported.filename().string();
   log_info(
       "{} has cameras behind ports or with distorted lenses, which OpenMVS treats as pinholes: its "

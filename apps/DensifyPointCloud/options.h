@@ -5,13 +5,13 @@
 #pragma once
 
 #include "base/program.h"
-#include "densify/settings.h"
+#include "densify/options.h"
 
 namespace axial::apps {
 
 struct Options {
   ParsedOptions parsed;
-  densify::Settings settings;
+  densify::Options settings;
 };
 
 // Parses and checks the command line. Error for an unknown option, for a value out of range, and

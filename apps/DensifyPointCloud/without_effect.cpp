@@ -9,7 +9,6 @@
 namespace axial::apps {
 namespace {
 
-using densify::Settings;
 using Names = std::initializer_list<const char*>;
 
 constexpr Names kMatching{"sub-resolution-levels", "iters",      "geometric-iters",
@@ -27,13 +26,13 @@ void warn_of(const Options& options, Names names, const std::string& cause) {
 }
 
 // If several exports are asked for, the first one is made.
-std::string export_that_is_made(const Settings& settings) {
-  if (settings.filter_point_cloud < 0) return "filter-point-cloud";
-  return settings.export_number_views != 0 ? "export-number-views" : "estimate-scale";
+std::string export_that_is_made(const densify::ExportJob& job) {
+  if (job.filter_point_cloud < 0) return "filter-point-cloud";
+  return job.export_number_views != 0 ? "export-number-views" : "estimate-scale";
 }
 
-void warn_of_options_an_export_ignores(const Options& options) {
-  const std::string made = export_that_is_made(options.settings);
+void warn_of_options_an_export_ignores(const Options& options, const densify::ExportJob& job) {
+  const std::string made = export_that_is_made(job);
   const std::string with = "with --" + made + ", which writes existing points";
   if (made == "filter-point-cloud")
     warn_of(options, {"export-number-views", "estimate-scale"}, with);
@@ -45,29 +44,31 @@ void warn_of_options_an_export_ignores(const Options& options) {
 }  // namespace
 
 void warn_of_options_without_effect(const Options& options) {
-  const Settings& settings = options.settings;
+  const densify::Options& settings = options.settings;
   if (settings.survey.files.ports == io::PortChoice::ignored)
     warn_of(options, {"housing"}, "with --camera-model pinhole");
-  if (only_exports(settings)) return warn_of_options_an_export_ignores(options);
-  if (!settings.neighbour_lists_output.empty()) {
+  if (const auto* job = settings.job_as<densify::ExportJob>())
+    return warn_of_options_an_export_ignores(options, *job);
+  if (settings.job_as<densify::NeighbourListsJob>()) {
     for (const Names& names : {kMatching, kFusion})
       warn_of(options, names, "with --output-view-neighbors-file, which matches no images");
     return;
   }
-  if (settings.parts > 0) warn_of(options, {"report-file"}, "with --part, which checks nothing");
-  if (!settings.until.empty()) {
+  if (const auto* job = settings.job_as<densify::StageJob>()) {
+    if (job->parts > 0) warn_of(options, {"report-file"}, "with --part, which checks nothing");
     warn_of(options, kFusion, "with --until, which makes no cloud");
     warn_of(options, {"fusion-tiles"}, "with --until, which makes no cloud");
   }
-  if (!settings.plan.empty())
+  if (settings.job_as<densify::PlanJob>())
     warn_of(options, {"report-file", "overwrite-dmaps", "remove-dmaps"}, "with --plan");
-  if (settings.plan.empty()) warn_of(options, {"plan-parts"}, "without --plan");
-  if (!settings.make_maps)
+  else
+    warn_of(options, {"plan-parts"}, "without --plan");
+  if (!settings.matching.make_maps)
     for (const Names& names : {kMatching, kMapSize})
       warn_of(options, names, "with --fusion-mode -1, which uses depth maps unchanged");
-  if (settings.tile > 0)
+  if (settings.job_as<densify::TileJob>())
     warn_of(options, {"remove-dmaps", "report-file"}, "with --tile, which makes no whole cloud");
-  if (!settings.fuse)
+  if (!settings.fusion.fuse)
     warn_of(options, kFusion, "with --fusion-mode 1, which makes only depth maps");
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "densify/scene_facts.h"
 #include "options.h"
 
 namespace axial::apps {

@@ -62,14 +62,14 @@ Agreement measure(const Project& project, const MemoryPlan& plan,
   return depth::summarise(found);
 }
 
-std::string likely_causes(const Project& project, const Settings& settings) {
+std::string likely_causes(const Project& project) {
   return project.housing
              ? "the port (its distances, normal or indices), the lens, or poses and points that "
                "are not in metres"
-             : "a missing " + settings.name_of("housing") + ", the lens, or the poses";
+             : "a missing " + project.name_of("housing") + ", the lens, or the poses";
 }
 
-void say(const Project& project, const Settings& settings, const Agreement& found) {
+void say(const Project& project, const Agreement& found) {
   const AgreementLimits limits;
   const std::string points = fmt::format(
       "the median deviation of {} sparse points from the depth maps is {:.2f} px ({:.2f} %), of "
@@ -92,7 +92,7 @@ void say(const Project& project, const Settings& settings, const Agreement& foun
       "Cameras and photographs do not seem to belong together: {} (usual: below {} and {}); {} "
       "(usual: over {:.0f} %){}. Likely causes: {}{}",
       points, limits.pixels, limits.systematic, pixels, 100 * limits.consistent,
-      wrong.score ? "; " + scores : "", likely_causes(project, settings),
+      wrong.score ? "; " + scores : "", likely_causes(project),
       wrong.score ? ", or photographs of another scene" : "");
 }
 
@@ -121,12 +121,13 @@ void write_report(const std::filesystem::path& file, const Agreement& found) {
 
 }  // namespace
 
-void check_agreement(const Project& project, const Settings& settings, const MemoryPlan& plan,
-                     bool photometric, const std::function<DepthMap(std::size_t image)>& read_map) {
+void check_agreement(const Project& project, const MemoryPlan& plan, bool photometric,
+                     const std::function<DepthMap(std::size_t image)>& read_map,
+                     const std::filesystem::path& report) {
   Agreement found = measure(project, plan, read_map);
   if (!photometric) found.scored = 0;
-  say(project, settings, found);
-  if (!settings.report.empty()) write_report(settings.report, found);
+  say(project, found);
+  if (!report.empty()) write_report(report, found);
 }
 
 }  // namespace axial::densify

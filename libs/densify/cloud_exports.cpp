@@ -13,8 +13,6 @@
 #include "base/log.h"
 #include "base/same_file.h"
 #include "cloud/visibility.h"
-#include "densify/fusion_stage.h"
-#include "densify/outputs.h"
 #include "io/openmvs/mvs.h"
 #include "io/ply/ply.h"
 
@@ -22,12 +20,6 @@ namespace axial::densify {
 namespace fs = std::filesystem;
 
 namespace {
-
-fs::path beside_output(const Settings& settings, const std::string& suffix) {
-  fs::path path = settings.output;
-  path.replace_extension();
-  return path += suffix;
-}
 
 std::size_t distinct_views(const SparsePoint& point) {
   std::size_t count = 0;
@@ -39,44 +31,53 @@ std::size_t distinct_views(const SparsePoint& point) {
   return count;
 }
 
-// The output path with `suffix`. Error if it is a file that was read.
-fs::path checked_output(const Settings& settings, const std::string& suffix) {
-  fs::path path = beside_output(settings, suffix);
-  require_not_an_input(path, scene_files(settings), settings.name_of("output"));
-  return path;
-}
+// What the exports share.
+struct PointExport {
+  Project& project;
+  const ExportJob& job;
+  const OutputOptions& output;
+  const std::vector<fs::path>& inputs;
+
+  io::PlyPlacement placement() const { return {project.frame, output.double_precision}; }
+
+  // The output path with `suffix`. Error if it is a file that was read.
+  fs::path file(const std::string& suffix) const {
+    const fs::path path = fs::path(output.scene).replace_extension() += suffix;
+    require_not_an_input(path, inputs, project.name_of("output"));
+    return path;
+  }
+};
 
 WrittenCloud told(const fs::path& ply, const Scene& scene) {
   log_info("{}: {} points", ply.string(), scene.points.size());
   return {ply, scene.points.size()};
 }
 
-WrittenCloud write(const Project& project, const Settings& settings, const std::string& suffix,
-                   bool with_scene) {
-  const fs::path ply = checked_output(settings, suffix + ".ply");
-  Settings of_scene = settings;
-  of_scene.output = with_scene ? checked_output(settings, suffix + ".mvs") : fs::path();
-  io::write_cloud_ply(ply, cloud_of(project.scene), true, placement_of(project, settings));
+WrittenCloud write(const PointExport& to, const std::string& suffix, bool with_scene) {
+  const Project& project = to.project;
+  const fs::path ply = to.file(suffix + ".ply");
+  const fs::path scene = with_scene ? to.file(suffix + ".mvs") : fs::path();
+  io::write_cloud_ply(ply, cloud_of(project.scene), true, to.placement());
   if (with_scene) {
-    write_cameras_beside_output(project, of_scene);
-    io::write_mvs(of_scene.output, project.scene, settings.survey.files.working_folder);
+    io::write_cameras_beside(scene, project, project.lenses, project.options.files);
+    io::write_mvs(scene, project.scene, project.options.files.working_folder);
   }
   return told(ply, project.scene);
 }
 
-WrittenCloud export_filtered(Project& project, const Settings& settings) {
-  const std::vector<long> visibility = cloud::visibility_of_points(project.scene);
-  keep_points(project.scene,
-              [&](std::size_t point) { return visibility[point] > settings.filter_point_cloud; });
-  return write(project, settings, "_filtered", true);
+WrittenCloud export_filtered(const PointExport& to) {
+  const std::vector<long> visibility = cloud::visibility_of_points(to.project.scene);
+  keep_points(to.project.scene,
+              [&](std::size_t point) { return visibility[point] > to.job.filter_point_cloud; });
+  return write(to, "_filtered", true);
 }
 
-WrittenCloud export_number_of_views(Project& project, const Settings& settings) {
-  const auto least = static_cast<std::size_t>(std::abs(settings.export_number_views));
-  keep_points(project.scene, [&](std::size_t point) {
-    return distinct_views(project.scene.points[point]) >= least;
+WrittenCloud export_number_of_views(const PointExport& to) {
+  const auto least = static_cast<std::size_t>(std::abs(to.job.export_number_views));
+  keep_points(to.project.scene, [&](std::size_t point) {
+    return distinct_views(to.project.scene.points[point]) >= least;
   });
-  return write(project, settings, fmt::format("_{}views", least), settings.export_number_views < 0);
+  return write(to, fmt::format("_{}views", least), to.job.export_number_views < 0);
 }
 
 // Writes positions, colours and normals if the scene has them, confidence and value.
@@ -102,13 +103,12 @@ void write_scales(const fs::path& ply, const Scene& scene,
   write_atomically(ply, bytes);
 }
 
-WrittenCloud export_scales(const Project& project, const Settings& settings) {
-  const Scene& scene = project.scene;
-  const fs::path ply = checked_output(settings, "_scale.ply");
+WrittenCloud export_scales(const PointExport& to) {
+  const Scene& scene = to.project.scene;
+  const fs::path ply = to.file("_scale.ply");
   std::vector<cloud::PointScale> scales = cloud::scales_of_points(scene);
-  for (cloud::PointScale& scale : scales)
-    scale.scale *= static_cast<float>(settings.estimate_scale);
-  write_scales(ply, scene, scales, placement_of(project, settings));
+  for (cloud::PointScale& scale : scales) scale.scale *= static_cast<float>(to.job.estimate_scale);
+  write_scales(ply, scene, scales, to.placement());
   return told(ply, scene);
 }
 
@@ -130,12 +130,13 @@ void keep_points(Scene& scene, const std::function<bool(std::size_t point)>& kep
   if (!scene.point_colors.empty()) scene.point_colors.resize(count);
 }
 
-WrittenCloud export_cloud(Project project, const Settings& settings) {
-  if (project.scene.points.empty())
-    fail("{}: has no points to export", settings.survey.files.scene.string());
-  if (settings.filter_point_cloud < 0) return export_filtered(project, settings);
-  if (settings.export_number_views != 0) return export_number_of_views(project, settings);
-  return export_scales(project, settings);
+WrittenCloud export_cloud(Project project, const ExportJob& job, const OutputOptions& output,
+                          const std::vector<fs::path>& inputs) {
+  if (project.scene.points.empty()) fail("{}: has no points to export", project.file().string());
+  const PointExport to{project, job, output, inputs};
+  if (job.filter_point_cloud < 0) return export_filtered(to);
+  if (job.export_number_views != 0) return export_number_of_views(to);
+  return export_scales(to);
 }
 
 }  // namespace axial::densify

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "densify/densify.h"
 
-#include <algorithm>
 #include <set>
 
 #include "base/log.h"
@@ -11,78 +10,63 @@
 #include "densify/agreement_check.h"
 #include "densify/cloud_exports.h"
 #include "densify/depth_stage.h"
-#include "densify/existing_maps.h"
 #include "densify/fusion_stage.h"
-#include "densify/memory_plan.h"
+#include "densify/load_project.h"
 #include "densify/neighbour_lists.h"
 #include "densify/outputs.h"
 #include "densify/pinhole_export.h"
 #include "densify/pinhole_folder.h"
-#include "densify/project.h"
-#include "densify/tile_files.h"
-#include "densify/tile_stage.h"
 #include "densify/work_plan.h"
 #include "io/openmvs/mvs.h"
 #include "io/ply/ply.h"
-#include "survey/image_store.h"
 
 namespace axial::densify {
 namespace fs = std::filesystem;
 
 namespace {
 
-Report export_points(const Settings& settings) {
-  const WrittenCloud cloud = export_cloud(load_scene(settings), settings);
-  return {Result::point_export, cloud.file, cloud.points};
+// Runs for a stage or a plan of all images write the fingerprints of photographs to a file of the
+// working folder. Runs for parts and tiles read the file.
+survey::KeptContents kept_contents(const fs::path& working_folder, const Job& job) {
+  const auto* stage = std::get_if<StageJob>(&job);
+  const bool is_part = (stage && stage->parts > 0) || std::get_if<TileJob>(&job);
+  const bool is_kept = is_part || stage || std::get_if<PlanJob>(&job);
+  return {working_folder / "depth_inputs.json", is_kept, is_kept && !is_part};
 }
 
-Report write_lists(const Settings& settings, const SceneObserver& observer) {
-  const Project project = load_project(settings, observer);
-  check_outputs(project, settings);
-  write_neighbour_lists(settings.neighbour_lists_output, project.scene);
-  return {Result::neighbour_lists, {}};
+Project load_with_fingerprint(const Options& options, const SceneObserver& observer) {
+  Project project = load_project(options.survey, options.views, options.output.scene, observer);
+  const auto* stage = options.job_as<StageJob>();
+  project.part = part_of(project.references, stage ? *stage : StageJob());
+  const fs::path& folder = options.survey.files.working_folder;
+  project.fingerprint = fingerprint(project, options.matching, kept_contents(folder, options.job));
+  return project;
 }
 
-ExistingMaps checked_maps(Project& project, const Settings& settings) {
-  ExistingMaps existing = find_existing_maps(project, settings);
-  if (settings.make_maps && settings.tile > 0)
-    require_final_maps(project, settings, existing);
-  else if (settings.make_maps)
-    check_overwriting(project, settings, existing);
+ExistingMaps checked_maps(Project& project, const MatchOptions& options, bool for_tile) {
+  ExistingMaps existing = find_existing_maps(project, options.make_maps);
+  if (!options.make_maps)
+    keep_images_with_maps(project, existing);
+  else if (for_tile)
+    require_final_maps(project, options, existing);
   else
-    keep_images_with_maps(project, settings, existing);
+    check_overwriting(project, options.overwrite_dmaps, existing);
   return existing;
 }
 
 // Runs that make parts of the maps or read complete maps can share a folder. A run that makes all
 // maps removes those of earlier stages, which another run would miss.
-LockUse use_of_maps(const Project& project, const Settings& settings,
-                    const ExistingMaps& existing) {
-  if (!settings.make_maps || settings.parts > 0) return LockUse::shared;
-  const std::string made_from = final_made_from(project, settings);
-  const bool complete = std::ranges::all_of(project.references, [&](std::size_t image) {
-    return existing[image].origin == io::DmapOrigin::ours && existing[image].made_from == made_from;
-  });
-  return complete ? LockUse::shared : LockUse::alone;
-}
-
-// The name by which runs lock the depth maps of a folder.
-fs::path maps_in(const Settings& settings) {
-  return settings.survey.files.working_folder / "depth_maps";
+LockUse use_of_maps(const Project& project, const Options& options, const ExistingMaps& existing) {
+  const auto* stage = options.job_as<StageJob>();
+  const bool shared = existing.are_final || (stage && stage->parts > 0) ||
+                      are_complete(project, options.matching, existing);
+  return shared ? LockUse::shared : LockUse::alone;
 }
 
 // Runs for a part, a stage or a list do not write the output itself.
-LockUse use_of_output(const Settings& settings) {
-  const bool is_part = settings.tile > 0 || !settings.until.empty() || !settings.plan.empty() ||
-                       !settings.neighbour_lists_output.empty();
-  return is_part ? LockUse::shared : LockUse::alone;
-}
-
-// If the maps are not fused, the sparse cloud gets the dense cloud's name, as in OpenMVS.
-std::size_t write_sparse_cloud(const Project& project, const Settings& settings,
-                               const fs::path& ply) {
-  io::write_cloud_ply(ply, cloud_of(project.scene), true, placement_of(project, settings));
-  return project.scene.points.size();
+LockUse use_of_output(const Options& options) {
+  const bool alone = options.job_as<WholeRun>() || options.job_as<ExportJob>();
+  return alone ? LockUse::alone : LockUse::shared;
 }
 
 // The images of the part that this run makes, and their sources.
@@ -93,108 +77,156 @@ std::vector<std::size_t> images_of_part(const Project& project) {
   return {images.begin(), images.end()};
 }
 
-// Makes or uses the depth maps of the run's images.
-void prepare_maps(const Project& project, const Settings& settings, const MemoryPlan& plan,
-                  const ExistingMaps& existing, survey::ImageStore& images) {
-  // The first stage reads the images of its part. Later stages need not check them again.
-  if (settings.parts == 0)
-    images.check_all(plan.decodes);
-  else if (stages_to_make(settings) == 1)
-    images.check(images_of_part(project), plan.decodes);
-  if (settings.make_maps)
-    make_depth_maps(project, settings, plan, existing, images);
-  else
-    check_agreement(project, settings, plan, false, [&](std::size_t image) {
-      return read_final_map(project, settings, existing, image, images.mask(image));
-    });
-}
-
-// The images are in memory only in this function.
-std::size_t make_cloud(const Project& project, const Settings& settings, const MemoryPlan& plan,
-                       const ExistingMaps& existing, const fs::path& ply) {
-  survey::ImageStore images(project, channels_of(settings), plan.cached_images);
-  prepare_maps(project, settings, plan, existing, images);
-  return settings.fuse ? write_cloud(project, settings, plan, existing, images, ply)
-                       : write_sparse_cloud(project, settings, ply);
-}
-
-void remove_depth_maps(const Project& project, const Settings& settings) {
+void remove_depth_maps(const Project& project) {
   for (const std::size_t image : project.references) {
-    const fs::path file = depth_map_path(project, settings, image);
+    const fs::path file = depth_map_path(project, image);
     fs::remove(file);
     fs::remove(file.string() + ".json");
   }
 }
 
-Report make_stage(const Settings& settings, const SceneObserver& observer) {
-  stages_to_make(settings);  // throws for a wrong name
-  Project project = load_project(settings, observer);
-  const ExistingMaps existing = checked_maps(project, settings);
-  const OutputLock maps(maps_in(settings), use_of_maps(project, settings, existing));
-  const MemoryPlan plan = plan_memory(project, settings);
-  check_outputs(project, settings);
-  survey::ImageStore images(project, channels_of(settings), plan.cached_images);
-  prepare_maps(project, settings, plan, existing, images);
-  return {Result::stage, {}, 0, project.part.size()};
-}
+// A run that makes or uses depth maps, after all checks and before the first map is made.
+struct MapRun {
+  const Options& options;
+  Project project;
+  ExistingMaps existing;
+  OutputLock lock;
+  MemoryPlan plan;
 
-Report write_plan(const Settings& settings, const SceneObserver& observer) {
-  const Project project = load_project(settings, observer);
-  check_outputs(project, settings);
-  write_work_plan(settings.plan, project, settings);
-  return {Result::plan, {}};
-}
+  MapRun(const Options& of_run, const RunFiles& files, const SceneObserver& observer)
+      : options(of_run),
+        project(load_with_fingerprint(options, observer)),
+        existing(checked_maps(project, options.matching, options.job_as<TileJob>() != nullptr)),
+        lock(options.survey.files.working_folder / "depth_maps",
+             use_of_maps(project, options, existing)),
+        plan(plan_memory(project, options)) {
+    check_outputs(project, files, options.matching.pictures);
+    if (const fs::path& folder = options.output.pinhole_export; !folder.empty())
+      check_pinhole_export(project, folder);
+  }
 
-// Depth maps and images were checked when the maps were made.
-Report make_tile(const Project& project, const Settings& settings, const MemoryPlan& plan,
-                 const ExistingMaps& existing) {
-  map_large_blocks();
-  survey::ImageStore images(project, channels_of(settings), plan.cached_images);
-  const CloudCounts counts = write_tile({project, settings, plan, existing, images});
-  return {Result::tile, tile_file(settings, settings.tile), counts.points,
-          project.references.size(), true};
-}
+  survey::ImageStore images() const {
+    const bool colors = options.fusion.needs_colors();
+    return {project, colors ? survey::Channels::both : survey::Channels::grey, plan.cached_images};
+  }
 
-Report reconstruct(const Settings& settings, const SceneObserver& observer) {
-  Project project = load_project(settings, observer);
-  const ExistingMaps existing = checked_maps(project, settings);
-  const OutputLock maps(maps_in(settings), use_of_maps(project, settings, existing));
-  const MemoryPlan plan = plan_memory(project, settings);
-  check_outputs(project, settings);
-  check_pinhole_export(project, settings);
-  if (settings.tile > 0) return make_tile(project, settings, plan, existing);
+  // Makes or uses the depth maps of the run's images.
+  void prepare_maps(survey::ImageStore& images) const {
+    const auto* job = options.job_as<StageJob>();
+    // The first stage reads the images of its part. Later stages need not check them again.
+    if (!job || job->parts == 0)
+      images.check_all(plan.decodes);
+    else if (stages_until(job->until, options.matching) == 1)
+      images.check(images_of_part(project), plan.decodes);
+    const fs::path& report = options.output.report;
+    if (options.matching.make_maps)
+      return make_depth_maps({project, existing, plan, images}, options.matching, job, report);
+    const auto read_map = [&](std::size_t image) {
+      return read_final_map(project, existing, image, images.mask(image));
+    };
+    check_agreement(project, plan, false, read_map, report);
+  }
+};
 
-  const fs::path ply = fs::path(settings.output).replace_extension(".ply");
-  const std::size_t points = make_cloud(project, settings, plan, existing, ply);
-  return_freed_memory();  // the images' memory is needed to write the scene
-  write_cameras_beside_output(project, settings);
-  io::write_mvs(settings.output, project.scene, settings.survey.files.working_folder);
-  log_info("{}: {} points", ply.string(), points);
-  if (settings.fuse && points == 0)
-    log_warning(
-        "The cloud is empty: no point was seen by {} views (see {}), or masks and the region of "
-        "interest exclude all points",
-        settings.fusion.min_views, settings.name_of("fusion.min_views"));
-  export_pinholes(project, settings, plan, existing, ply);
-  if (settings.fuse) remove_tiles(settings);
-  if (settings.remove_dmaps && settings.fuse) remove_depth_maps(project, settings);
-  return {settings.fuse ? Result::dense_cloud : Result::sparse_cloud, ply, points,
-          project.references.size(), all_pinholes(project)};
-}
+// Makes what a job asks for.
+struct JobRun {
+  const Options& options;
+  const SceneObserver& observer;
+  const RunFiles files;
+
+  Report operator()(const ExportJob& job) const {
+    const fs::path& points = options.views.point_cloud;
+    const WrittenCloud cloud =
+        export_cloud(load_scene(options.survey, points, options.output.scene, true), job,
+                     options.output, files.inputs);
+    return {Result::point_export, cloud.file, cloud.points};
+  }
+
+  Report operator()(const NeighbourListsJob& job) const {
+    const Project project =
+        load_project(options.survey, options.views, options.output.scene, observer);
+    check_outputs(project, files, options.matching.pictures);
+    write_neighbour_lists(job.file, project.scene);
+    return {Result::neighbour_lists, {}};
+  }
+
+  Report operator()(const PlanJob& job) const {
+    const Project project = load_with_fingerprint(options, observer);
+    check_outputs(project, files, options.matching.pictures);
+    write_work_plan(project, options, job);
+    return {Result::plan, {}};
+  }
+
+  Report operator()(const StageJob&) const {
+    const MapRun run(options, files, observer);
+    survey::ImageStore images = run.images();
+    run.prepare_maps(images);
+    return {Result::stage, {}, 0, run.project.part.size()};
+  }
+
+  // Depth maps and images were checked when the maps were made.
+  Report operator()(const TileJob& job) const {
+    const MapRun run(options, files, observer);
+    survey::ImageStore images = run.images();
+    const std::size_t points = write_tile({run.project, run.existing, run.plan, images},
+                                          options.fusion, options.output, job.tile);
+    return {Result::tile, tile_file(options.output.scene, job.tile, options.fusion.tiles), points,
+            run.project.references.size(), true};
+  }
+
+  Report operator()(const WholeRun&) const {
+    const bool fuse = options.fusion.fuse;
+    MapRun run(options, files, observer);
+    const fs::path ply = fs::path(options.output.scene).replace_extension(".ply");
+    const std::size_t points = make_cloud(run, ply);
+    write_scene(run.project);
+    log_info("{}: {} points", ply.string(), points);
+    if (fuse && points == 0)
+      log_warning(
+          "The cloud is empty: no point was seen by {} views (see {}), or masks and the region of "
+          "interest exclude all points",
+          options.fusion.min_views, options.name_of("fusion.min_views"));
+    if (!options.output.pinhole_export.empty())
+      export_pinholes(run.project, options.output, run.existing, run.plan.exports);
+    if (fuse) remove_tiles(options.output.scene, options.fusion.tiles);
+    if (fuse && options.fusion.remove_dmaps) remove_depth_maps(run.project);
+    return {fuse ? Result::dense_cloud : Result::sparse_cloud, ply, points,
+            run.project.references.size(), all_pinholes(run.project)};
+  }
+
+ private:
+  // The images are in memory only in this function. If the maps are not fused, the sparse cloud
+  // gets the dense cloud's name, as in OpenMVS.
+  std::size_t make_cloud(const MapRun& run, const fs::path& ply) const {
+    const Project& project = run.project;
+    survey::ImageStore images = run.images();
+    run.prepare_maps(images);
+    if (options.fusion.fuse)
+      return write_cloud({project, run.existing, run.plan, images}, options.fusion, options.output);
+    io::write_cloud_ply(ply, cloud_of(project.scene), true,
+                        {project.frame, options.output.double_precision});
+    return project.scene.points.size();
+  }
+
+  void write_scene(const Project& project) const {
+    return_freed_memory();  // the images' memory is needed to write the scene
+    const io::SceneFiles& from = options.survey.files;
+    io::write_cameras_beside(options.output.scene, project, project.lenses, from);
+    io::write_mvs(options.output.scene, project.scene, from.working_folder);
+  }
+};
 
 }  // namespace
 
-Report densify(const Settings& settings, const SceneObserver& observer) {
+Report densify(const Options& options, const SceneObserver& observer) {
+  check(options);
   share_one_heap();
-  const ThreadLimit threads(settings.max_threads);
+  const ThreadLimit threads(options.max_threads);
   // If its folder cannot be made, require_writable reports it.
-  const OutputLock lock = lock_output(settings.output, use_of_output(settings));
-  check_outputs(settings);
-  if (only_exports(settings)) return export_points(settings);
-  if (!settings.neighbour_lists_output.empty()) return write_lists(settings, observer);
-  if (!settings.plan.empty()) return write_plan(settings, observer);
-  if (!settings.until.empty()) return make_stage(settings, observer);
-  return reconstruct(settings, observer);
+  const OutputLock lock = lock_output(options.output.scene, use_of_output(options));
+  const JobRun run{options, observer, files_of(options)};
+  check_outputs(run.files, options.survey.files);
+  return std::visit(run, options.job);
 }
 
 }  // namespace axial::densify

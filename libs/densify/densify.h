@@ -5,19 +5,19 @@
 #include <cstddef>
 #include <filesystem>
 
-#include "densify/scene_facts.h"
-#include "densify/settings.h"
+#include "densify/options.h"
 
 namespace axial::densify {
 
 // What a run has written.
 enum class Result {
-  dense_cloud,   // depth maps, and the cloud fused from them
-  sparse_cloud,  // depth maps; the cloud consists of the scene's points (Settings::fuse is false)
-  tile,          // one tile of the cloud (Settings::tile)
-  point_export,  // see cloud_exports.h
+  dense_cloud,      // depth maps, and the cloud fused from them
+  sparse_cloud,     // depth maps; the cloud consists of the scene's points (FusionOptions::fuse:
+                    // false)
+  tile,             // one tile of the cloud (TileJob)
+  point_export,     // see cloud_exports.h
   neighbour_lists,  // see neighbour_lists.h
-  stage,            // depth maps of the stage Settings::until, of all images or of a part
+  stage,            // depth maps of the stage StageJob::until, of all images or of a part
   plan              // see work_plan.h
 };
 
@@ -35,20 +35,20 @@ struct Report {
 };
 
 // Makes the depth map of every suitable image of the scene, fuses the maps to a cloud, and writes
-// the maps, the cloud, and the scene with its housing, lenses and offset. With some settings a run
-// writes other files instead (Result, Settings).
+// the maps, the cloud, and the scene with its housing, lenses and offset. A run with another job
+// than WholeRun (Options::job) writes other files instead (Result).
 //
 // * A run that was stopped continues where it ended: depth maps of an earlier run with the same
-//   input and settings are used again (map_stages.h). The result has the same bytes for any
+//   input and options are used again (map_stages.h). The result has the same bytes for any
 //   number of threads and any max_memory.
 // * Inputs are never changed. An output file appears under its name only when it is complete.
 // * Memory stays below max_memory, and does not grow with the number of images, with three
 //   exceptions: the scene, one bit per pixel in fusion (of the views of a tile), and a cloud whose
 //   colours or normals are estimated from the whole cloud (estimate_colors or estimate_normals is
 //   1). Such a cloud is kept in memory in addition to max_memory.
-// * With Settings::tile the run makes only one tile of the cloud. With Settings::fusion_tiles the
-//   run makes the cloud from all tiles. A tile needs complete depth maps. Its points are those of
-//   the cloud in one piece, except for a few near the borders of the tile (fusion_tiles.h).
+// * With TileJob the run makes only one tile of the cloud. With FusionOptions::tiles the run makes
+//   the cloud from all tiles. A tile needs complete depth maps. Its points are those of the cloud
+//   in one piece, except for a few near the borders of the tile (tiles.h).
 // * Progress, results and warnings are logged (base/log.h). `observer`, unless it is empty, is
 //   called once, before views are selected. It is not called for a point export.
 // * Call densify() before other threads start, and make only one run at a time. The reason: the
@@ -56,6 +56,7 @@ struct Report {
 //   after the run.
 //
 // Throws an Error for
+// - options that contradict each other (check() in options.h),
 // - a fault of the scene or of a file that belongs to the scene,
 // - an image that is missing, truncated, damaged or of another shape than its camera,
 // - an output that cannot be written, or that is an input,
@@ -63,8 +64,8 @@ struct Report {
 //   makes no maps,
 // - too little memory,
 // - a scene of which no image can get a depth map.
-// All this is checked before the first depth map is made. Precondition: each setting is in the
-// range that the setting's comment, or the comment of its type, names.
-Report densify(const Settings& settings, const SceneObserver& observer = {});
+// All this is checked before the first depth map is made. Precondition: each number is in the
+// range that its comment, or the comment of its type, names.
+Report densify(const Options& options, const SceneObserver& observer = {});
 
 }  // namespace axial::densify

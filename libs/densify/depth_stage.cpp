@@ -2,24 +2,19 @@
 #include "densify/depth_stage.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
 #include <vector>
 
-#include "base/error.h"
 #include "densify/agreement_check.h"
 #include "densify/map_stages.h"
 #include "depth/border.h"
 #include "depth/filters.h"
 #include "depth/patch_match.h"
 #include "depth/weak_texture.h"
-#include "io/openmvs/scene_files.h"
 
 namespace axial::densify {
-namespace fs = std::filesystem;
-
 namespace {
 
 // The data for matching one image. They must live while it runs.
@@ -35,15 +30,15 @@ struct Task {
 // Makes the maps of the stages. It must live while the stages run.
 class MapMaker {
  public:
-  MapMaker(const Project& project, const Settings& settings, survey::ImageStore& images)
-      : project_(project), settings_(settings), images_(images) {}
+  MapMaker(const Project& project, const MatchOptions& options, survey::ImageStore& images)
+      : project_(project), options_(options), images_(images) {}
 
   std::vector<Stage> stages() const {
-    const std::vector<std::string> names = stage_names(settings_);
+    const std::vector<std::string> names = stage_names(options_);
     std::vector<Stage> stages;
     stages.push_back({names[0], "Estimated depth maps",
                       [this](std::size_t image, PreviousMaps&) { return estimate(image); }});
-    for (int pass = 0; pass < settings_.geometric_iterations; ++pass)
+    for (int pass = 0; pass < options_.geometric_iterations; ++pass)
       stages.push_back(
           {names[stages.size()], fmt::format("Geometric-consistency pass {}", pass + 1),
            [this, pass](std::size_t image, PreviousMaps& previous) {
@@ -51,7 +46,7 @@ class MapMaker {
            },
            false,
            [this](std::size_t image) { return with(image, with_maps(project_.sources[image])); }});
-    if (settings_.postprocess & kAdjust)
+    if (options_.postprocess & kAdjust)
       stages.push_back(
           {names.back(), "Adjusted depth maps",
            [this](std::size_t image, PreviousMaps& previous) { return adjust(image, previous); },
@@ -96,7 +91,7 @@ class MapMaker {
       result->points.push_back(project_.scene.points[point].position);
     const cv::Mat1b& mask = result->pixels[0]->mask;
     result->input = {&result->views[0], result->sources, result->points,
-                     mask.empty() ? nullptr : &mask, settings_.projection};
+                     mask.empty() ? nullptr : &mask, options_.projection};
     return result;
   }
 
@@ -107,13 +102,13 @@ class MapMaker {
 
   DepthMap estimate(std::size_t image) const {
     const std::unique_ptr<Task> work = task(image);
-    const DepthMap map = depth::estimate_depth_map(work->input, settings_.matching);
-    return named(settings_.geometric_iterations == 0 ? clean(map, *work, image) : map, image);
+    const DepthMap map = depth::estimate_depth_map(work->input, options_);
+    return named(options_.geometric_iterations == 0 ? clean(map, *work, image) : map, image);
   }
 
   DepthMap refine(std::size_t image, int pass, PreviousMaps& previous) const {
     const std::unique_ptr<Task> work = task(image);
-    const bool last = pass + 1 == settings_.geometric_iterations;
+    const bool last = pass + 1 == options_.geometric_iterations;
     std::vector<std::shared_ptr<const DepthMap>> held;
     std::vector<const DepthMap*> maps;
     for (const ViewScore& source : project_.sources[image]) {
@@ -121,19 +116,19 @@ class MapMaker {
       held.push_back(has_map ? previous.get(source.image) : nullptr);
       maps.push_back(held.back().get());
     }
-    const DepthMap map = depth::refine_depth_map(work->input, previous.read(image), maps, pass,
-                                                 last, settings_.matching);
+    const DepthMap map =
+        depth::refine_depth_map(work->input, previous.read(image), maps, pass, last, options_);
     return named(last ? clean(map, *work, image) : map, image);
   }
 
   DepthMap clean(DepthMap map, const Task& task, std::size_t image) const {
     map = depth::remove_unconfirmed(map, task.views[0].grey, depth::border_pixels(task.input, map));
-    if (settings_.postprocess & kSpeckles) map = depth::remove_speckles(map, settings_.speckles);
-    if (settings_.postprocess & kGaps) {
+    if (options_.postprocess & kSpeckles) map = depth::remove_speckles(map, options_.speckles);
+    if (options_.postprocess & kGaps) {
       cv::Mat1b ignored;
       if (const cv::Mat1b mask = images_.mask(image); !mask.empty())
         cv::compare(mask, 0, ignored, cv::CMP_EQ);
-      map = depth::fill_gaps(map, settings_.gaps, ignored);
+      map = depth::fill_gaps(map, options_.gaps, ignored);
     }
     return map;
   }
@@ -146,60 +141,34 @@ class MapMaker {
   }
 
   const Project& project_;
-  const Settings& settings_;
+  const MatchOptions& options_;
   survey::ImageStore& images_;
 };
 
 }  // namespace
 
-std::vector<std::string> stage_names(const Settings& settings) {
-  std::vector<std::string> names{"photometric"};
-  for (int pass = 0; pass < settings.geometric_iterations; ++pass)
-    names.push_back(fmt::format("geometric{}", pass + 1));
-  if (settings.postprocess & kAdjust) names.emplace_back("adjusted");
-  return names;
-}
-
-std::size_t stages_to_make(const Settings& settings) {
-  const std::vector<std::string> names = stage_names(settings);
-  if (settings.until.empty() || settings.until == "maps") return names.size();
-  const auto found = std::ranges::find(names, settings.until);
-  if (found == names.end())
-    fail("{} {}: must be one of {}, maps", settings.name_of("until"), settings.until,
-         fmt::join(names, ", "));
-  return static_cast<std::size_t>(found - names.begin()) + 1;
-}
-
-fs::path depth_map_path(const Project& project, const Settings& settings, std::size_t image) {
-  return settings.survey.files.working_folder / io::depth_map_name(project.views[image].id);
-}
-
-std::string final_made_from(const Project& project, const Settings& settings) {
-  survey::ImageStore unused(project, channels_of(settings), 0);
-  return project.fingerprint + " " + MapMaker(project, settings, unused).stages().back().name;
-}
-
-void make_depth_maps(const Project& project, const Settings& settings, const MemoryPlan& plan,
-                     const ExistingMaps& existing, survey::ImageStore& images) {
-  const MapMaker maker(project, settings, images);
-  StageRun run;
-  run.images = project.part;
-  run.all_images = project.references;
-  run.final_file = [&](std::size_t image) { return depth_map_path(project, settings, image); };
-  run.fingerprint = project.fingerprint;
-  run.existing = existing;
-  run.in_flight = plan.in_flight;
-  run.cached_depths = plan.cached_depths;
-  run.cached_maps = plan.cached_maps;
-  run.pictures = settings.pictures;
-  run.check = [&](bool first_stage, const ReadMap& read_map) {
-    check_agreement(project, settings, plan, first_stage, read_map);
+void make_depth_maps(const Run& run, const MatchOptions& options, const StageJob* job,
+                     const std::filesystem::path& report) {
+  const Project& project = run.project;
+  const MapMaker maker(project, options, run.images);
+  StageRun stages;
+  stages.images = project.part;
+  stages.all_images = project.references;
+  stages.final_file = [&](std::size_t image) { return depth_map_path(project, image); };
+  stages.fingerprint = project.fingerprint;
+  stages.existing = run.existing.states;
+  stages.in_flight = run.plan.in_flight;
+  stages.cached_depths = run.plan.cached_depths;
+  stages.cached_maps = run.plan.cached_maps;
+  stages.pictures = options.pictures;
+  stages.check = [&](bool first_stage, const ReadMap& read_map) {
+    check_agreement(project, run.plan, first_stage, read_map, report);
   };
-  run.most_stages = stages_to_make(settings);
-  if (settings.parts > 0)
-    run_part(maker.stages(), run.most_stages - 1, run);
+  if (job) stages.most_stages = stages_until(job->until, options);
+  if (job && job->parts > 0)
+    run_part(maker.stages(), stages.most_stages - 1, stages);
   else
-    run_stages(maker.stages(), run);
+    run_stages(maker.stages(), stages);
 }
 
 }  // namespace axial::densify

@@ -9,7 +9,6 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "densify/depth_stage.h"
 #include "scene/resolution.h"
 
 namespace axial::densify {
@@ -21,47 +20,37 @@ bool is_plain_pinhole(const CameraModel& camera) {
   return !camera.port && !camera.distortion;
 }
 
-// The points that the map's corners and centre see at the middle of its depth range.
-std::vector<Eigen::Vector3d> points_seen(const DepthMap& map) {
-  const double w = map.camera.width - 1, h = map.camera.height - 1;
-  const auto near = static_cast<double>(map.min_depth), far = static_cast<double>(map.max_depth);
-  const double depth = near > 0 ? std::sqrt(near * far) : far / 2;
-  std::vector<Eigen::Vector3d> points;
-  std::visit(
-      [&](const auto& camera) {
-        for (const auto& [u, v] : {std::pair{0.0, 0.0}, {w, 0.0}, {0.0, h}, {w, h}, {w / 2, h / 2}})
-          points.push_back(map.pose.to_world(camera.ray({u, v}).at(depth)));
-      },
-      make_camera<double>(map.camera));
-  return points;
+// The side file (io/openmvs/dmap.h) of a foreign map is ignored, because it may belong to an older
+// map of this program.
+io::DmapSide side_to_read(DmapOrigin origin) {
+  return origin == DmapOrigin::foreign ? io::DmapSide::ignored : io::DmapSide::used;
 }
 
 // The largest distance [px] between the images of the same points in the map's camera and in the
-// scene's camera, at the map's resolution.
+// scene's camera, at the map's resolution. The points are those that the map's corners and centre
+// see at the middle of its depth range.
 double largest_shift(const DepthMap& map, const CameraModel& model, const Pose& pose) {
-  const std::vector<Eigen::Vector3d> points = points_seen(map);
   const double w = map.camera.width - 1, h = map.camera.height - 1;
-  const double us[] = {0, w, 0, w, w / 2}, vs[] = {0, 0, h, h, h / 2};
+  const Eigen::Vector2d pixels[] = {{0, 0}, {w, 0}, {0, h}, {w, h}, {w / 2, h / 2}};
+  const auto near = static_cast<double>(map.min_depth), far = static_cast<double>(map.max_depth);
+  const double depth = near > 0 ? std::sqrt(near * far) : far / 2;
+  const CameraVariant<double> of_map = make_camera<double>(map.camera);
+  const CameraVariant<double> of_scene = make_camera<double>(model);
   double largest = 0;
-  std::visit(
-      [&](const auto& camera) {
-        for (std::size_t i = 0; i < points.size(); ++i) {
-          const auto seen = camera.project(pose.to_camera(points[i]));
-          if (!seen.visible) {
-            largest = std::numeric_limits<double>::infinity();
-            return;
-          }
-          largest = std::max(largest, std::hypot(seen.pixel.x() - us[i], seen.pixel.y() - vs[i]));
-        }
-      },
-      make_camera<double>(model));
+  for (const Eigen::Vector2d& pixel : pixels) {
+    const Eigen::Vector3d point = map.pose.to_world(
+        std::visit([&](const auto& camera) { return camera.ray(pixel).at(depth); }, of_map));
+    const auto seen = std::visit(
+        [&](const auto& camera) { return camera.project(pose.to_camera(point)); }, of_scene);
+    if (!seen.visible) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, (seen.pixel - pixel).norm());
+  }
   return largest;
 }
 
 // The image's camera at the resolution of its map. Error unless the map belongs to this camera.
-CameraModel camera_of_map(const Project& project, const Settings& settings, std::size_t image,
-                          DmapOrigin origin) {
-  const std::string file = depth_map_path(project, settings, image).string();
+CameraModel camera_of_map(const Project& project, std::size_t image, DmapOrigin origin) {
+  const std::string file = depth_map_path(project, image).string();
   const SceneImage& scene_image = project.scene.images[image];
   if (origin == DmapOrigin::damaged)
     fail(
@@ -86,6 +75,10 @@ CameraModel camera_of_map(const Project& project, const Settings& settings, std:
   return camera;
 }
 
+bool is_ours(const io::DmapStatus& map, const std::string& made_from) {
+  return map.origin == DmapOrigin::ours && map.made_from == made_from;
+}
+
 void leave_out(const cv::Mat1b& mask, DepthMap& map) {
   cv::Mat1b left_out;
   cv::compare(mask, 0, left_out, cv::CMP_EQ);
@@ -96,38 +89,62 @@ void leave_out(const cv::Mat1b& mask, DepthMap& map) {
 
 }  // namespace
 
-io::DmapSide side_to_read(DmapOrigin origin) {
-  return origin == DmapOrigin::foreign ? io::DmapSide::ignored : io::DmapSide::used;
-}
-
-ExistingMaps find_existing_maps(const Project& project, const Settings& settings) {
-  ExistingMaps maps(project.scene.images.size());
+ExistingMaps find_existing_maps(const Project& project, bool make_maps) {
+  ExistingMaps maps{std::vector<io::DmapStatus>(project.scene.images.size()), !make_maps};
   // One map at a time: each is read completely, and the memory plan does not exist yet.
   for (const std::size_t image : project.part)
-    maps[image] = io::dmap_status(depth_map_path(project, settings, image));
+    maps.states[image] = io::dmap_status(depth_map_path(project, image));
   return maps;
 }
 
-DepthMap read_final_map(const Project& project, const Settings& settings, const ExistingMaps& maps,
-                        std::size_t image, const cv::Mat1b& mask) {
-  const auto side = settings.make_maps ? io::DmapSide::used : side_to_read(maps[image].origin);
-  DepthMap map = io::read_dmap(depth_map_path(project, settings, image), side).map;
-  if (!settings.make_maps && !mask.empty()) leave_out(mask, map);
+DepthMap read_final_map(const Project& project, const ExistingMaps& maps, std::size_t image,
+                        const cv::Mat1b& mask) {
+  const auto side = maps.are_final ? side_to_read(maps.states[image].origin) : io::DmapSide::used;
+  DepthMap map = io::read_dmap(depth_map_path(project, image), side).map;
+  if (maps.are_final && !mask.empty()) leave_out(mask, map);
   if (cv::countNonZero(map.normal.reshape(1)) == 0) map.normal.release();
   return map;
 }
 
-void check_overwriting(const Project& project, const Settings& settings, const ExistingMaps& maps) {
+std::string final_made_from(const Project& project, const MatchOptions& options) {
+  return project.fingerprint + " " + stage_names(options).back();
+}
+
+bool are_complete(const Project& project, const MatchOptions& options, const ExistingMaps& maps) {
+  const std::string wanted = final_made_from(project, options);
+  return std::ranges::all_of(
+      project.references, [&](std::size_t image) { return is_ours(maps.states[image], wanted); });
+}
+
+void require_final_maps(const Project& project, const MatchOptions& options,
+                        const ExistingMaps& maps) {
+  const std::string wanted = final_made_from(project, options);
+  for (const std::size_t image : project.references) {
+    const io::DmapStatus& map = maps.states[image];
+    if (is_ours(map, wanted)) continue;
+    const char* fault = map.origin == DmapOrigin::none      ? "does not exist"
+                        : map.origin == DmapOrigin::damaged ? "is damaged"
+                        : map.origin == DmapOrigin::foreign
+                            ? "was written by another program"
+                            : "was made from other input or with other options";
+    fail(
+        "{}: the depth map {}, and {} makes no depth maps: make all depth maps first, in a run "
+        "without it",
+        depth_map_path(project, image).string(), fault, project.name_of("tile"));
+  }
+}
+
+void check_overwriting(const Project& project, bool overwrite, const ExistingMaps& maps) {
   std::vector<std::size_t> foreign;
   for (const std::size_t image : project.part) {
-    if (maps[image].origin == DmapOrigin::foreign) foreign.push_back(image);
-    if (maps[image].origin == DmapOrigin::damaged)
+    if (maps.states[image].origin == DmapOrigin::foreign) foreign.push_back(image);
+    if (maps.states[image].origin == DmapOrigin::damaged)
       log_warning("{}: the depth map or its side file is damaged; the depth map is computed again",
-                  depth_map_path(project, settings, image).string());
+                  depth_map_path(project, image).string());
   }
   if (foreign.empty()) return;
-  const std::string file = depth_map_path(project, settings, foreign.front()).string();
-  if (settings.overwrite_dmaps) {
+  const std::string file = depth_map_path(project, foreign.front()).string();
+  if (overwrite) {
     log_info("{} and {} other depth maps of other programs are overwritten", file,
              foreign.size() - 1);
     return;
@@ -137,29 +154,29 @@ void check_overwriting(const Project& project, const Settings& settings, const E
   });
   fail("{}: was written by another program ({} of {} depth maps were): {}move it away, or give {}",
        file, foreign.size(), project.part.size(),
-       fusable ? "fuse the existing depth maps (" + settings.name_of("make_maps false") + "), "
+       fusable ? "fuse the existing depth maps (" + project.name_of("make_maps false") + "), "
                : "it counts as the depth map of a pinhole camera: ",
-       settings.name_of("overwrite_dmaps true"));
+       project.name_of("overwrite_dmaps true"));
 }
 
-void keep_images_with_maps(Project& project, const Settings& settings, const ExistingMaps& maps) {
+void keep_images_with_maps(Project& project, const ExistingMaps& maps) {
   std::vector<std::size_t> kept;
   std::filesystem::path missing;  // the first missing map
   std::size_t foreign = 0;
   for (const std::size_t image : project.references) {
-    const DmapOrigin origin = maps[image].origin;
+    const DmapOrigin origin = maps.states[image].origin;
     if (origin == DmapOrigin::none) {
       log_info("{}: has no depth map, left out", project.scene.images[image].path);
-      if (missing.empty()) missing = depth_map_path(project, settings, image);
+      if (missing.empty()) missing = depth_map_path(project, image);
       continue;
     }
-    project.views[image].camera = camera_of_map(project, settings, image, origin);
+    project.views[image].camera = camera_of_map(project, image, origin);
     foreign += origin == DmapOrigin::foreign ? 1 : 0;
     kept.push_back(image);
   }
   if (kept.empty())
-    fail("{}: no depth map found: {} does not exist", settings.name_of("make_maps false"),
-         depth_map_path(project, settings, project.references.front()).string());
+    fail("{}: no depth map found: {} does not exist", project.name_of("make_maps false"),
+         depth_map_path(project, project.references.front()).string());
   const std::string line = fmt::format("{} of {} images have a depth map, {} by other programs",
                                        kept.size(), project.references.size(), foreign);
   if (kept.size() < project.references.size())

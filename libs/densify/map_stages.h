@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "base/shared_cache.h"
-#include "densify/settings.h"
+#include "densify/options.h"
 #include "io/openmvs/dmap.h"
 #include "scene/depth_map.h"
 

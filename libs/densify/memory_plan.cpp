@@ -2,15 +2,93 @@
 #include "densify/memory_plan.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/memory.h"
 #include "base/parallel.h"
-#include "densify/agreement_check.h"
-#include "densify/memory_limit.h"
+#include "cloud/fuse.h"
+#include "densify/pinhole_export.h"
+#include "densify/tiles.h"
+#include "depth/filters.h"
+#include "depth/patch_match.h"
+#include "io/images/image.h"
+#include "io/openmvs/dmap.h"
+#include "io/openmvs/mvs_counts.h"
+#include "io/openmvs/point_source.h"
+#include "survey/image_store.h"
 
 namespace axial::densify {
 namespace {
+
+std::uint64_t limit_of(const survey::Options& survey) {
+  return memory_limit(survey.memory.megabytes, survey.files.name_of("max_memory"));
+}
+
+// The memory that a project holds for each image besides the scene: view, chosen neighbours,
+// fingerprint.
+std::uint64_t kept_of_images(std::uint64_t images) {
+  constexpr std::uint64_t kChosen = 1024;
+  return images * (sizeof(View) + kChosen);
+}
+
+// The memory for the text of the housing and of the lenses while it is read.
+std::uint64_t side_files(const io::SceneFiles& files) {
+  constexpr std::uint64_t kPerByte = 12;
+  std::uint64_t bytes = 0;
+  for (const std::filesystem::path& file :
+       {io::housing_file(files), io::lenses_beside(files.scene)}) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (!error) bytes += size;
+  }
+  return kPerByte * bytes;
+}
+
+// The memory of a scene before its views are scored.
+std::uint64_t kept_of(const io::MvsCounts& counts, const io::SceneFiles& files) {
+  return counts.scene_bytes() + side_files(files) + kept_of_images(counts.images);
+}
+
+// The peak while the file of the scene is read and before its views are scored. Empty if the file
+// cannot be counted.
+std::optional<std::uint64_t> bytes_to_read(const io::SceneFiles& files,
+                                           const std::filesystem::path& point_cloud,
+                                           bool for_export) {
+  auto counts = io::count_mvs(files.scene);
+  if (!counts) return {};
+  std::uint64_t reading = counts->reading_bytes();
+  if (!point_cloud.empty())
+    if (const auto cloud = io::count_point_cloud(point_cloud, *counts)) {
+      reading = std::max(reading, cloud->reading_bytes);
+      if (!for_export) counts = cloud->scene;
+    }
+  const ScoringMemory scoring =
+      scoring_memory({counts->images, counts->points, counts->observations, 0});
+  const std::uint64_t kept = kept_of(*counts, files);
+  return std::max({reading, kept + scoring.work + scoring.kept, kept + counts->writing_bytes()});
+}
+
+// The peak while views are scored, with `size.neighbours` neighbours.
+std::uint64_t bytes_to_score(const io::MvsCounts& counts, const ScoringSize& size,
+                             const io::SceneFiles& files) {
+  const ScoringMemory scoring = scoring_memory(size);
+  io::MvsCounts written = counts;
+  written.set_view_scores(size.neighbours);
+  return kept_of(counts, files) + scoring.kept + std::max(scoring.work, written.writing_bytes());
+}
+
+// `bytes`: the peak while the scene is read and its views are scored.
+void require_memory_for_scene(std::uint64_t bytes, const survey::Options& survey) {
+  const std::uint64_t limit = limit_of(survey), least = bytes + survey.memory.program_bytes;
+  if (bytes > survey.memory.program_bytes && limit < least)
+    fail(
+        "{} {}: {} MB are too little, this scene needs at least {} MB for reading and for "
+        "scoring its views",
+        survey.files.name_of("max_memory"), survey.memory.megabytes, limit / kMegabyte,
+        least / kMegabyte + 1);
+}
 
 constexpr std::size_t kMostCached = 48;
 
@@ -42,6 +120,77 @@ std::size_t enlarged(std::size_t entries, std::uint64_t each, std::uint64_t spar
 
 }  // namespace
 
+void require_memory_to_read(const survey::Options& survey, const std::filesystem::path& point_cloud,
+                            bool for_export) {
+  if (const auto bytes = bytes_to_read(survey.files, point_cloud, for_export))
+    require_memory_for_scene(*bytes, survey);
+}
+
+void require_memory_to_score(const Scene& scene, const survey::Options& survey,
+                             const ViewSelectionOptions& selection) {
+  ScoringSize size = scoring_size(scene, selection);
+  const io::MvsCounts counts = io::count_scene(scene);
+  if (bytes_to_score(counts, size, survey.files) + survey.memory.program_bytes > limit_of(survey))
+    size.neighbours = count_neighbours(scene, selection);
+  require_memory_for_scene(bytes_to_score(counts, size, survey.files), survey);
+}
+
+std::uint64_t least_memory_to_prepare(const Scene& scene, const survey::Options& survey,
+                                      const ViewOptions& options) {
+  ScoringSize size = scoring_size(scene, options.selection);
+  size.neighbours = 0;
+  for (const SceneImage& image : scene.images) size.neighbours += image.neighbours.size();
+  io::MvsCounts counts = io::count_scene(scene);
+  counts.set_view_scores(0);  // before scoring
+  const std::uint64_t reading = bytes_to_read(survey.files, options.point_cloud, false).value_or(0);
+  return survey.memory.program_bytes +
+         std::max(bytes_to_score(counts, size, survey.files), reading);
+}
+
+ListLengths longest_lists(const Project& project, const MatchOptions& matching,
+                          const FusionOptions& fusion) {
+  ListLengths lists;
+  lists.references = project.references.size();
+  for (const std::size_t image : project.references) {
+    lists.matched = std::max(lists.matched, 1 + project.sources[image].size());
+    lists.fused = std::max(lists.fused, 1 + project.neighbours[image].size());
+  }
+  lists.fused = std::min(lists.fused, lists.references);
+  lists.marked =
+      fusion.fuse && fusion.tiles > 1 ? most_views_of_a_tile(project, fusion) : lists.references;
+  if (matching.postprocess & kAdjust)
+    lists.adjusted = std::min(lists.fused, 1 + depth::AdjustOptions().max_neighbours);
+  return lists;
+}
+
+StageBytes bytes_of_stages(const Project& project, const Options& options,
+                           const ListLengths& lists) {
+  const bool colors = options.fusion.needs_colors();
+  const bool exports = !options.output.pinhole_export.empty();
+  std::uint64_t pixels = 0, decode = 0;
+  bool masks = false;
+  StageBytes bytes;
+  for (const View& view : project.views) {
+    if (exports) bytes.exported = std::max(bytes.exported, bytes_needed_to_resample(view));
+    pixels = std::max(pixels, view.pixels());
+    decode = std::max(decode, io::bytes_needed(view.header));
+    masks |= view.masked();
+  }
+  bytes.scene = allocated_memory();
+  bytes.write_scene = io::count_scene(project.scene).writing_bytes();
+  bytes.decode = survey::bytes_needed_to_load(decode, pixels);
+  bytes.image = survey::bytes_needed(survey::PixelsSize{pixels, masks, colors});
+  bytes.map = bytes_of_map(pixels);
+  bytes.depths = bytes_of_depths(pixels);
+  bytes.read_map = io::dmap_bytes_needed(pixels);
+  bytes.match = depth::bytes_needed(depth::MatchSize{pixels, lists.matched - 1});
+  if (lists.adjusted > 0)
+    bytes.adjust = depth::bytes_needed(depth::AdjustSize{pixels, lists.adjusted - 1});
+  bytes.fused = cloud::bytes_needed({.pixels = pixels, .maps = 1, .colors = colors});
+  bytes.taken = cloud::bytes_needed({.pixels = pixels, .views = lists.marked});
+  return bytes;
+}
+
 std::uint64_t least_bytes(const StageBytes& bytes, const ListLengths& lists,
                           std::size_t in_flight) {
   return std::max({matching(bytes, lists, in_flight), bytes.write_scene, bytes.exported,
@@ -62,7 +211,7 @@ MemoryPlan share_out(const StageBytes& bytes, const ListLengths& lists, std::uin
 
   const std::uint64_t more_images = (plan.cached_images - images) * bytes.image;
   // The stages that cache depths and the stages that cache whole maps run one after the other.
-  // Comparing maps (agreement_check.h) takes less memory than matching.
+  // Comparing maps takes less memory than matching.
   const std::uint64_t for_maps = room - matching(bytes, lists, plan.in_flight) - more_images;
   plan.cached_depths = enlarged((lists.matched - 1) * plan.in_flight, bytes.depths, for_maps);
   plan.cached_maps =
@@ -77,15 +226,16 @@ MemoryPlan share_out(const StageBytes& bytes, const ListLengths& lists, std::uin
   return plan;
 }
 
-MemoryPlan plan_memory(const Project& project, const Settings& settings) {
-  const ListLengths lists = longest_lists(project, settings);
-  const StageBytes bytes = bytes_of_stages(project, settings, lists);
-  const std::uint64_t limit = memory_limit(settings);
-  const std::uint64_t fixed = bytes.scene + settings.survey.memory.program_bytes;
+MemoryPlan plan_memory(const Project& project, const Options& options) {
+  const survey::Options& survey = options.survey;
+  const ListLengths lists = longest_lists(project, options.matching, options.fusion);
+  const StageBytes bytes = bytes_of_stages(project, options, lists);
+  const std::uint64_t limit = limit_of(survey);
+  const std::uint64_t fixed = bytes.scene + survey.memory.program_bytes;
   const std::uint64_t least = fixed + least_bytes(bytes, lists, 1);
   if (limit < least)
-    fail("{} {}: {} MB are too little, this scene needs {} MB", settings.name_of("max_memory"),
-         settings.survey.memory.megabytes, limit / kMegabyte, least / kMegabyte + 1);
+    fail("{} {}: {} MB are too little, this scene needs {} MB", survey.files.name_of("max_memory"),
+         survey.memory.megabytes, limit / kMegabyte, least / kMegabyte + 1);
   const MemoryPlan plan = share_out(bytes, lists, limit - fixed, thread_count());
   log_details(
       "Memory {} MB, at least {}: {} images at a time, {} kept, {} depths, {} maps, {} in fusion",

@@ -1,15 +1,85 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Divides the memory that max_memory allows among the parts of a run. The plan decides how many
-// images are processed at a time and how much is cached. It never affects the result.
+// The memory of a run. Checks whether max_memory is enough, and divides it among the parts of the
+// run: the plan decides how many images are processed at a time and how much is cached. It never
+// affects the result. The formula of each stage is defined in the source file of the stage, beside
+// the code that allocates the memory.
+//
+// Every check throws an Error that names max_memory, its value and the least necessary value, if
+// the allowed memory (memory_limit() in base/memory.h) is too little, or if max_memory is 0 and the
+// system does not tell how much memory is available.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 
 #include "densify/project.h"
-#include "densify/stage_bytes.h"
+#include "scene/scene.h"
 
 namespace axial::densify {
+
+// Checks, before the scene is read, the memory for reading it with the points of the file
+// `point_cloud` (empty: none), and for scoring its views. The memory is estimated from the counts
+// of images and points in the files. `for_export`: the points are only exported. There is no error
+// in two cases:
+// - The estimate is at most MemoryAllowance::program_bytes. plan_memory() checks the whole need
+//   later.
+// - The counts cannot be read. The function that reads the scene reports the fault.
+void require_memory_to_read(const survey::Options& survey, const std::filesystem::path& point_cloud,
+                            bool for_export);
+
+// Makes the same check for a scene that was read. Call this function before the views are scored.
+// The estimate is closer than that of require_memory_to_read(), because it includes the lists of
+// neighbours that scoring makes. Throws an Error, too, if a point has a view of an image that does
+// not exist.
+void require_memory_to_score(const Scene& scene, const survey::Options& survey,
+                             const ViewSelectionOptions& selection);
+
+// The least memory [bytes] with which both checks pass. `scene`: with the neighbours of its images.
+std::uint64_t least_memory_to_prepare(const Scene& scene, const survey::Options& survey,
+                                      const ViewOptions& options);
+
+// The largest number of maps that the agreement check compares for one image: the image's own map
+// and the maps of up to three source views.
+inline constexpr std::size_t kMapsCompared = 4;
+
+// Numbers of images. `references`: the number of images that get depth maps. Each of the next three
+// is the largest number of images that a stage needs for one reference, including the reference.
+struct ListLengths {
+  std::size_t references = 0;
+  std::size_t matched = 0;   // the reference and its source views
+  std::size_t adjusted = 0;  // the reference and its neighbours in the adjust filter; 0: no filter
+  std::size_t fused = 0;     // the reference and its neighbours in fusion
+  // The views whose pixels fusion marks as used: all references, or those that a tile needs
+  // (most_views_of_a_tile() in tiles.h).
+  std::size_t marked = 0;
+};
+
+// Returns the numbers for the images and filters of a run. Precondition: views are selected, and
+// there is at least one reference (load_project).
+ListLengths longest_lists(const Project& project, const MatchOptions& matching,
+                          const FusionOptions& fusion);
+
+// Memory [bytes] of the large data. If images differ in size, each number is for the largest.
+struct StageBytes {
+  std::uint64_t scene = 0;        // of the loaded scene: the memory that is allocated already
+  std::uint64_t write_scene = 0;  // while the scene is written, in addition to `scene`
+  std::uint64_t decode = 0;       // while an image is read, in addition to `image`
+  std::uint64_t image = 0;        // one survey::Pixels (image_store.h)
+  std::uint64_t map = 0;          // one DepthMap: depth, normal, confidence
+  std::uint64_t depths = 0;       // the depths of a DepthMap alone
+  std::uint64_t read_map = 0;     // while a map is read or written, in addition to `map`
+  std::uint64_t match = 0;        // matching of one reference, with the resulting map
+  std::uint64_t adjust = 0;       // the adjust filter of one reference; 0: no filter
+  std::uint64_t fused = 0;        // one map in fusion, with its image if the cloud has colours
+  std::uint64_t taken = 0;        // fusion: one bit per pixel of ListLengths::marked views
+  std::uint64_t exported = 0;     // pinhole export: while one image is resampled; 0: no export
+};
+
+// Returns the memory of each stage. `lists`: the result of longest_lists(). StageBytes::scene is
+// the memory that the process has allocated at the time of the call.
+StageBytes bytes_of_stages(const Project& project, const Options& options,
+                           const ListLengths& lists);
 
 // How many images and maps a run may have in memory at the same time.
 struct MemoryPlan {
@@ -31,10 +101,9 @@ struct MemoryPlan {
 // lists of sources and neighbours. A cache has at most 48 entries, unless the images in work need
 // more: the memory of a run must not grow with the number of images, and more entries would hardly
 // help, because images are processed in order.
-// Throws an Error if the allowed memory (memory_limit()) is too little to process one image at a
-// time, or to write the scene while no images are cached. The error names max_memory, its value,
-// the allowed memory and the necessary memory.
-MemoryPlan plan_memory(const Project& project, const Settings& settings);
+// Throws an Error if the allowed memory is too little to process one image at a time, or to write
+// the scene while no images are cached.
+MemoryPlan plan_memory(const Project& project, const Options& options);
 
 // The least memory [bytes] of a run that processes `in_flight` images at a time, without the loaded
 // scene (StageBytes::scene) and without MemoryAllowance::program_bytes. Its caches hold only the

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "densify/outputs.h"
 
+#include <algorithm>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/same_file.h"
-#include "densify/depth_stage.h"
-#include "densify/tile_files.h"
+#include "densify/tiles.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/housing.h"
 #include "io/openmvs/scene_files.h"
@@ -15,23 +15,26 @@ namespace fs = std::filesystem;
 
 namespace {
 
-fs::path cloud_file(const Settings& settings) {
-  return fs::path(settings.output).replace_extension(".ply");
+fs::path cloud_file(const fs::path& scene) {
+  return fs::path(scene).replace_extension(".ply");
 }
 
 // The housing is not among these files: it is not written if it is the file that was read.
-std::vector<fs::path> cloud_outputs(const Settings& settings) {
-  std::vector<fs::path> files = tile_outputs(settings);
-  files.insert(files.end(),
-               {settings.output, cloud_file(settings), io::lenses_beside(settings.output)});
+std::vector<fs::path> cloud_outputs(const Options& options) {
+  const fs::path& scene = options.output.scene;
+  std::vector<fs::path> files;
+  const auto* job = options.job_as<TileJob>();
+  const std::size_t last = job ? job->tile : options.fusion.tiles;
+  for (std::size_t tile = job ? job->tile : 1; tile <= last; ++tile)
+    std::ranges::copy(files_of_tile(scene, tile, options.fusion.tiles), std::back_inserter(files));
+  files.insert(files.end(), {scene, cloud_file(scene), io::lenses_beside(scene)});
   return files;
 }
 
-std::vector<fs::path> depth_outputs(const Project& project, const Settings& settings) {
+std::vector<fs::path> depth_outputs(const Project& project, bool pictures) {
   std::vector<fs::path> files;
-  const bool pictures = settings.pictures != Pictures::none;
   for (const std::size_t image : project.references) {
-    const fs::path map = depth_map_path(project, settings, image);
+    const fs::path map = depth_map_path(project, image);
     files.insert(files.end(), {map, map.string() + ".json"});
     for (const char* picture : {".png", ".normal.png", ".confidence.png"})
       if (pictures) files.push_back(fs::path(map).replace_extension(picture));
@@ -48,57 +51,54 @@ bool is_one_file(const fs::path& a, const fs::path& b) {
 }
 
 // Error if the output is a file that the reconstruction reads, writes or resumes.
-void check_side_output(const std::string& setting, const fs::path& output,
-                       const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {
-  if (output.empty()) return;
-  require_not_an_input(output, inputs, setting);
+void check_side_output(const NamedOutput& output, const std::vector<fs::path>& inputs,
+                       const std::vector<fs::path>& outputs) {
+  require_not_an_input(output.path, inputs, output.setting);
   for (const fs::path& other : outputs)
-    if (is_one_file(output, other))
-      fail("{} {}: is also the file name of the run's {}", setting, output.string(),
+    if (is_one_file(output.path, other))
+      fail("{} {}: is also the file name of the run's {}", output.setting, output.path.string(),
            other.filename().string());
 }
 
 }  // namespace
 
-std::vector<fs::path> scene_files(const Settings& settings) {
-  std::vector<fs::path> files = io::files_of_scene(settings.survey.files);
-  files.insert(files.end(), {settings.point_cloud, settings.neighbour_lists});
-  files.insert(files.end(), settings.other_inputs.begin(), settings.other_inputs.end());
+RunFiles files_of(const Options& options) {
+  RunFiles files{
+      options.output.scene, io::files_of_scene(options.survey.files), cloud_outputs(options), {}};
+  files.inputs.insert(files.inputs.end(),
+                      {options.views.point_cloud, options.views.neighbour_lists});
+  std::ranges::copy(options.output.other_inputs, std::back_inserter(files.inputs));
+  const auto add = [&](const std::string& setting, const fs::path& file) {
+    if (!file.empty()) files.others.push_back({setting, file});
+  };
+  add(options.name_of("report"), options.output.report);
+  if (const auto* job = options.job_as<PlanJob>()) add(options.name_of("plan"), job->file);
+  if (const auto* job = options.job_as<NeighbourListsJob>())
+    add(options.name_of("neighbour_lists_output"), job->file);
   return files;
 }
 
-void check_outputs(const Settings& settings) {
-  require_no_inputs(cloud_outputs(settings), scene_files(settings), settings.name_of("output"));
-  if (!settings.neighbour_lists_output.empty())
-    require_not_an_input(settings.neighbour_lists_output, scene_files(settings),
-                         settings.name_of("neighbour_lists_output"));
-  require_writable(settings.output);
-  require_writable(cloud_file(settings));
-  if (!settings.plan.empty()) {
-    require_not_an_input(settings.plan, scene_files(settings), settings.name_of("plan"));
-    require_writable(settings.plan);
-  }
-  if (!settings.report.empty()) {
-    require_not_an_input(settings.report, scene_files(settings), settings.name_of("report"));
-    require_writable(settings.report);
-  }
-  require_writable(settings.survey.files.working_folder / "depth0000.dmap");
-  remove_abandoned(settings.survey.files.working_folder, "depth");
+void check_outputs(const RunFiles& files, const io::SceneFiles& from) {
+  require_no_inputs(files.outputs, files.inputs, from.name_of("output"));
+  for (const NamedOutput& other : files.others)
+    require_not_an_input(other.path, files.inputs, other.setting);
+  require_writable(files.scene);
+  require_writable(cloud_file(files.scene));
+  for (const NamedOutput& other : files.others) require_writable(other.path);
+  require_writable(from.working_folder / "depth0000.dmap");
+  remove_abandoned(from.working_folder, "depth");
 }
 
-void check_outputs(const Project& project, const Settings& settings) {
-  std::vector<fs::path> inputs = scene_files(settings);
-  for (const fs::path& file : survey::photograph_files(project)) inputs.push_back(file);
-  require_no_inputs(cloud_outputs(settings), inputs, settings.name_of("output"));
-  std::vector<fs::path> outputs = depth_outputs(project, settings);
-  require_no_inputs(outputs, inputs, settings.name_of("working_folder"));
-  for (const fs::path& file : cloud_outputs(settings)) outputs.push_back(file);
-  outputs.push_back(io::housing_beside(settings.output));
-  outputs.push_back(io::geo_offset_beside(settings.output));
-  check_side_output(settings.name_of("report"), settings.report, inputs, outputs);
-  check_side_output(settings.name_of("plan"), settings.plan, inputs, outputs);
-  check_side_output(settings.name_of("neighbour_lists_output"), settings.neighbour_lists_output,
-                    inputs, outputs);
+void check_outputs(const Project& project, const RunFiles& files, Pictures pictures) {
+  std::vector<fs::path> inputs = files.inputs;
+  std::ranges::copy(survey::photograph_files(project), std::back_inserter(inputs));
+  require_no_inputs(files.outputs, inputs, project.name_of("output"));
+  std::vector<fs::path> outputs = depth_outputs(project, pictures != Pictures::none);
+  require_no_inputs(outputs, inputs, project.name_of("working_folder"));
+  std::ranges::copy(files.outputs, std::back_inserter(outputs));
+  outputs.push_back(io::housing_beside(files.scene));
+  outputs.push_back(io::geo_offset_beside(files.scene));
+  for (const NamedOutput& other : files.others) check_side_output(other, inputs, outputs);
 }
 
 }  // namespace axial::densify

@@ -13,7 +13,6 @@
 #include "base/progress.h"
 #include "cloud/pinhole_resampling.h"
 #include "densify/cloud_exports.h"
-#include "densify/depth_stage.h"
 #include "densify/pinhole_folder.h"
 #include "io/bytes/json.h"
 #include "io/bytes/written_files.h"
@@ -39,12 +38,12 @@ struct Exported {
 
 class Export {
  public:
-  Export(Project& project, const Settings& settings, const MemoryPlan& plan,
-         const ExistingMaps& existing)
+  Export(Project& project, const OutputOptions& output, const ExistingMaps& maps,
+         std::size_t at_once)
       : project_(project),
-        settings_(settings),
-        plan_(plan),
-        existing_(existing),
+        output_(output),
+        maps_(maps),
+        at_once_(at_once),
         photographs_(io::common_image_folder(project.scene)),
         exported_(project.scene.images.size()),
         is_exported_(project.scene.images.size(), false) {
@@ -52,14 +51,14 @@ class Export {
     find_range();
   }
 
-  void run(const fs::path& ply) {
-    write_folder(settings_.pinhole_export, [&](const fs::path& folder) {
+  void run() {
+    write_folder(output_.pinhole_export, [&](const fs::path& folder) {
       folder_ = fs::absolute(folder);
       export_images();
-      export_cloud(ply);
+      export_cloud();
       export_scene();
       export_marker();
-      remove_earlier_export(settings_.pinhole_export, folder_);
+      remove_earlier_export(output_.pinhole_export, folder_);
     });
     report();
   }
@@ -81,16 +80,16 @@ class Export {
 
   DepthMap load_map(std::size_t image, const cv::Mat1b& opaque) const {
     cv::Mat1b mask;
-    if (!settings_.make_maps)
+    if (maps_.are_final)
       mask =
-          survey::working_mask(project_.views[image], opaque, settings_.survey.ignore_mask_label);
-    return read_final_map(project_, settings_, existing_, image, mask);
+          survey::working_mask(project_.views[image], opaque, project_.options.ignore_mask_label);
+    return read_final_map(project_, maps_, image, mask);
   }
 
-  // The resolution at which OpenMVS, with this run's settings, would work on the pinhole image.
+  // The resolution at which OpenMVS, with this run's options, would work on the pinhole image.
   cv::Size map_size(const CameraModel& pinhole, std::size_t image) const {
-    if (settings_.make_maps)
-      return working_size(pinhole.width, pinhole.height, settings_.survey.resolution);
+    if (!maps_.are_final)
+      return working_size(pinhole.width, pinhole.height, project_.options.resolution);
     const View& view = project_.views[image];
     const double scale = static_cast<double>(view.camera.width) / view.header.size.width;
     return {std::max(1, cvRound(scale * pinhole.width)),
@@ -101,8 +100,7 @@ class Export {
                   const cv::Mat1f& surface) const {
     map = cloud::resampled(map, view, surface);
     map.image_path = image_file(image).string();
-    io::write_dmap(folder_ / depth_map_path(project_, settings_, image).filename(), map,
-                   made_from());
+    io::write_dmap(folder_ / depth_map_path(project_, image).filename(), map, made_from());
   }
 
   std::string made_from() const { return project_.fingerprint + " as a pinhole's"; }
@@ -143,7 +141,7 @@ class Export {
     const std::size_t count = project_.references.size();
     ProgressCounter counter(console_progress("Exported pinhole images"), count);
     FirstError error;
-    for_each_in_flight(count, plan_.exports, [&](std::size_t i) {
+    for_each_in_flight(count, at_once_, [&](std::size_t i) {
       error.run(i, [&] { export_image(project_.references[i]); });
       counter.add();
     });
@@ -151,9 +149,10 @@ class Export {
   }
 
   // Writes float positions in the scene's frame, in which its poses are.
-  void export_cloud(const fs::path& ply) const {
+  void export_cloud() const {
+    const fs::path ply = fs::path(output_.scene).replace_extension(".ply");
     const fs::path file = folder_ / "scene.ply";
-    if (settings_.double_precision)
+    if (output_.double_precision)
       io::write_cloud_ply(file, io::read_cloud_ply(ply, project_.frame), true,
                           {project_.frame, false});
     else
@@ -208,7 +207,7 @@ class Export {
     }
     io::write_json(folder_ / kPinholeMarker, {{"version", 1},
                                               {"made_from", made_from()},
-                                              {"scene", settings_.survey.files.scene.string()},
+                                              {"scene", project_.file().string()},
                                               {"images", images},
                                               {"files", io::list_files(folder_)}});
   }
@@ -225,17 +224,17 @@ class Export {
       log_warning(
           "{}: {} of {} images have a wider field of view than a pinhole can show: "
           "their edges are cut off",
-          settings_.name_of("pinhole_export"), cut, count);
+          project_.name_of("pinhole_export"), cut, count);
     log_info(
         "{}: {} pinhole images, {:.1f} % of their pixels on a known surface: OpenMVS's programs "
         "can use scene.mvs, scene.ply and the depth maps in this folder",
-        settings_.pinhole_export.string(), count, 100 * exact / static_cast<double>(count));
+        output_.pinhole_export.string(), count, 100 * exact / static_cast<double>(count));
   }
 
   Project& project_;
-  const Settings& settings_;
-  const MemoryPlan& plan_;
-  const ExistingMaps& existing_;
+  const OutputOptions& output_;
+  const ExistingMaps& maps_;
+  std::size_t at_once_;
   fs::path photographs_, folder_;
   double near_ = 0, far_ = 0;       // lambda [m]
   std::vector<Exported> exported_;  // one for each image of the scene
@@ -257,9 +256,9 @@ std::uint64_t bytes_needed_to_resample(const View& view) {
   return images + bytes_of_map(pixels) + 2 * pinhole;
 }
 
-void export_pinholes(Project& project, const Settings& settings, const MemoryPlan& plan,
-                     const ExistingMaps& existing, const fs::path& ply) {
-  if (!settings.pinhole_export.empty()) Export(project, settings, plan, existing).run(ply);
+void export_pinholes(Project& project, const OutputOptions& output, const ExistingMaps& maps,
+                     std::size_t at_once) {
+  Export(project, output, maps, at_once).run();
 }
 
 }  // namespace axial::densify

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "densify/existing_maps.h"
-#include "densify/memory_plan.h"
 #include "densify/project.h"
 
 namespace axial::densify {
@@ -13,9 +12,9 @@ namespace axial::densify {
 // export_pinholes(). `view`: the image.
 std::uint64_t bytes_needed_to_resample(const View& view);
 
-// Writes the folder Settings::pinhole_export by write_folder() (base/atomic_file.h) and removes the
-// files of an earlier export from it (remove_earlier_export() in pinhole_folder.h). Does nothing if
-// Settings::pinhole_export is empty. The folder contains
+// Writes the folder OutputOptions::pinhole_export by write_folder() (base/atomic_file.h) and
+// removes the files of an earlier export from it (remove_earlier_export() in pinhole_folder.h). The
+// folder contains
 //   images/NAME                         for every image with a depth map (Project::references): the
 //                                       resampled photograph; NAME: see exported_name()
 //   images/NAME.mask.png                its labels (cloud::PinholeImage); NAME without extension
@@ -23,13 +22,14 @@ std::uint64_t bytes_needed_to_resample(const View& view);
 //   scene.mvs                           all images in the scene's order; images without a depth map
 //                                       are uncalibrated. It has the sparse points that
 //                                       calibrated images see
-//   scene.ply                           the cloud in the file `ply`, as float in the scene's frame
+//   scene.ply                           the cloud of the run, as float in the scene's frame
 //   pinhole_export.json                 facts about the resampling, and the list of written files
 // and the offset of the scene if it has one. Moves the sparse points out of the project's scene,
-// which has no points afterwards. `existing`: the result of find_existing_maps(). Precondition:
-// check_pinhole_export() (pinhole_folder.h) has returned. Throws an Error if an input cannot be
+// which has no points afterwards. `maps`: the result of find_existing_maps(). Resamples `at_once`
+// images at the same time. Precondition: check_pinhole_export() (pinhole_folder.h) has returned and
+// the cloud is complete. Throws an Error if an input cannot be
 // read or a file cannot be written.
-void export_pinholes(Project& project, const Settings& settings, const MemoryPlan& plan,
-                     const ExistingMaps& existing, const std::filesystem::path& ply);
+void export_pinholes(Project& project, const OutputOptions& output, const ExistingMaps& maps,
+                     std::size_t at_once);
 
 }  // namespace axial::densify

@@ -27,7 +27,7 @@ fs::path exported_name(const SceneImage& image, const fs::path& photographs) {
 
 namespace {
 
-void check_names(const Project& project, const Settings& settings) {
+void check_names(const Project& project) {
   const fs::path photographs = io::common_image_folder(project.scene);
   std::map<fs::path, const std::string*> taken;
   for (const std::size_t image : project.references) {
@@ -35,14 +35,13 @@ void check_names(const Project& project, const Settings& settings) {
     const fs::path name = exported_name(project.scene.images[image], photographs);
     for (const fs::path& file : {name, io::mask_beside(name)})
       if (const auto [other, added] = taken.try_emplace(file, &path); !added)
-        fail("{}: {} and {} would both be exported as images/{}",
-             settings.name_of("pinhole_export"), *other->second, path, file.string());
+        fail("{}: {} and {} would both be exported as images/{}", project.name_of("pinhole_export"),
+             *other->second, path, file.string());
   }
 }
 
-void check_folder(const Project& project, const Settings& settings) {
-  const fs::path& folder = settings.pinhole_export;
-  const std::string setting = settings.name_of("pinhole_export");
+void check_folder(const Project& project, const fs::path& folder) {
+  const std::string setting = project.name_of("pinhole_export");
   std::error_code error;
   if (!fs::exists(folder, error)) return;
   if (!fs::is_directory(folder, error))
@@ -53,8 +52,8 @@ void check_folder(const Project& project, const Settings& settings) {
     for (; inputs.insert(above).second && above.has_relative_path(); above = above.parent_path()) {
     }
   };
-  add(settings.survey.files.scene.parent_path());
-  add(settings.survey.files.working_folder);
+  add(project.file().parent_path());
+  add(project.options.files.working_folder);
   for (const SceneImage& image : project.scene.images) add(fs::path(image.path).parent_path());
   for (const fs::path& input : inputs)
     if (fs::equivalent(folder, input, error))
@@ -87,17 +86,15 @@ void remove_earlier_export(const fs::path& folder, const fs::path& staging) {
                 (folder / files.changed.front()).string(), files.changed.size() - 1);
 }
 
-void check_pinhole_export(const Project& project, const Settings& settings) {
-  if (settings.pinhole_export.empty()) return;
+void check_pinhole_export(const Project& project, const fs::path& folder) {
   if (all_pinholes(project))
     fail(
         "{} {}: no image of {} has a port or a distorted lens: OpenMVS can use the other "
         "results of this run directly",
-        settings.name_of("pinhole_export"), settings.pinhole_export.string(),
-        settings.survey.files.scene.string());
-  check_folder(project, settings);
-  check_names(project, settings);
-  require_writable_folder(settings.pinhole_export);
+        project.name_of("pinhole_export"), folder.string(), project.file().string());
+  check_folder(project, folder);
+  check_names(project);
+  require_writable_folder(folder);
 }
 
 }  // namespace axial::densify

@@ -26,13 +26,12 @@ std::filesystem::path exported_name(const SceneImage& image,
 void remove_earlier_export(const std::filesystem::path& folder,
                            const std::filesystem::path& staging);
 
-// Checks, before the work, whether the export can be written. Does nothing if
-// Settings::pinhole_export is empty. Throws an Error
+// Checks, before the work, whether the export can be written to `folder`. Throws an Error
 // - if no camera has a port or a distorted lens,
 // - if the folder contains inputs of this run (the scene file, photographs or the working folder),
 //   or is not empty and not an earlier export,
 // - if the folder is a file or cannot be written,
 // - if two images would be exported to the same file.
-void check_pinhole_export(const Project& project, const Settings& settings);
+void check_pinhole_export(const Project& project, const std::filesystem::path& folder);
 
 }  // namespace axial::densify

@@ -1,94 +1,116 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "densify/project.h"
 
-#include <algorithm>
-#include <set>
+#include <fmt/format.h>
 
-#include "base/error.h"
-#include "base/log.h"
-#include "base/progress.h"
-#include "densify/fingerprint.h"
-#include "densify/neighbour_lists.h"
-#include "densify/scene_memory.h"
-#include "io/openmvs/point_source.h"
+#include <algorithm>
+#include <cmath>
+
+#include "base/hash.h"
+#include "io/openmvs/scene_files.h"
 
 namespace axial::densify {
-namespace fs = std::filesystem;
-
 namespace {
 
-void find_views(Project& project) {
-  find_photographs(project);
-  std::vector<View> views(project.scene.images.size());
-  for (View& view : project.views) views[view.image] = std::move(view);
-  project.views = std::move(views);
+void add_options(Fingerprint& print, const MatchOptions& options, int ignore_mask_label) {
+  for (const std::uint64_t value :
+       {static_cast<std::uint64_t>(options.warp), static_cast<std::uint64_t>(options.projection),
+        static_cast<std::uint64_t>(options.sub_resolution_levels),
+        static_cast<std::uint64_t>(options.iterations),
+        static_cast<std::uint64_t>(options.geometric_iterations),
+        static_cast<std::uint64_t>(options.postprocess),
+        static_cast<std::uint64_t>(ignore_mask_label)})
+    print.add(value);
 }
 
-void check_ids(const Project& project) {
-  std::set<std::uint32_t> seen;
-  for (std::size_t i = 0; i < project.views.size(); ++i)
-    if (project.scene.images[i].calibrated && !seen.insert(project.views[i].id).second)
-      fail("image {}: ID {} is used twice, depth maps would overwrite each other",
-           project.scene.images[i].path, project.views[i].id);
+// A number of the options and its name in the fingerprint.
+struct NamedNumber {
+  const char* name;
+  double value;
+};
+using NamedNumbers = std::vector<NamedNumber>;
+
+template <class T>
+NamedNumber named(const char* name, T value) {
+  return {name, static_cast<double>(value)};
 }
 
-// Images with given neighbours need points of their own only for their depth range.
-void use_neighbour_lists(Project& project, const Settings& settings) {
-  const std::vector<bool> named = read_neighbour_lists(settings.neighbour_lists, project.scene);
-  for (std::size_t i = 0; i < named.size(); ++i) {
-    ViewPreparation& preparation = project.preparations[i];
-    if (named[i] && preparation.init_points.size() >= settings.selection.min_init_points)
-      preparation.problem.clear();
-  }
+// The numbers that OpenMVS's file of settings has, under their titles there. The side files of
+// existing depth maps hold fingerprints of these names, values and their order.
+NamedNumbers numbers_of_openmvs(const MatchOptions& options) {
+  return {named("Descriptor Min Magnitude Threshold",
+                std::sqrt(static_cast<double>(options.min_texture))),
+          named("NCC Threshold Keep", options.keep_cost),
+          named("Estimation Geometric Weight", options.geometric_weight),
+          named("Speckle Size", options.speckles.min_pixels),
+          named("Interpolate Gap Size", options.gaps.max_gap)};
 }
 
-void tell(const SceneObserver& observer, const Project& project, bool own_region) {
-  if (observer)
-    observer({project.housing.has_value(), own_region, project.scene.region.has_value()});
+// The numbers that are neither in numbers_of_openmvs() nor in add_options(). The structured
+// bindings name all members: a new member does not compile until it has a name here.
+NamedNumbers other_numbers(const depth::PatchMatchOptions& matching) {
+  const auto& [warp, sub_resolution_levels, iterations, coarsest_side, sigma_color, sigma_space,
+               min_texture, smoothness, prior_texture, coarse_pairs, first_pairs, later_pairs,
+               last_pairs, refinement_shrink, restart_trials, refinement_pixels, refinement_angle,
+               good_cost, fair_cost, bad_cost, search_planes, search_pairs, certain_cost, keep_cost,
+               geometric_weight, geometric_limit] = matching;
+  const auto& [depth_sigma, depth_bonus, normal_sigma, normal_bonus] = smoothness;
+  return {named("coarsest_side", coarsest_side),
+          named("sigma_color", sigma_color),
+          named("sigma_space", sigma_space),
+          named("smoothness.depth_sigma", depth_sigma),
+          named("smoothness.depth_bonus", depth_bonus),
+          named("smoothness.normal_sigma", normal_sigma),
+          named("smoothness.normal_bonus", normal_bonus),
+          named("prior_texture", prior_texture),
+          named("coarse_pairs", coarse_pairs),
+          named("first_pairs", first_pairs),
+          named("later_pairs", later_pairs),
+          named("last_pairs", last_pairs),
+          named("refinement_shrink", refinement_shrink),
+          named("restart_trials", restart_trials),
+          named("refinement_pixels", refinement_pixels),
+          named("refinement_angle", refinement_angle),
+          named("good_cost", good_cost),
+          named("fair_cost", fair_cost),
+          named("bad_cost", bad_cost),
+          named("search_planes", search_planes),
+          named("search_pairs", search_pairs),
+          named("certain_cost", certain_cost),
+          named("geometric_limit", geometric_limit)};
 }
 
-void select_views(Project& project, const Settings& settings, const SceneObserver& observer) {
-  Scene& scene = project.scene;
-  const bool own_region = scene.region.has_value();
-  if (!scene.region) scene.region = estimate_region(scene, settings.region);
-  if (scene.region) scene.region = with_border(*scene.region, settings.roi_border);
-  tell(observer, project, own_region);
-  require_memory_to_score(scene, settings);
-  project.preparations =
-      score_neighbours(scene, settings.selection, console_progress("Scored neighbours"));
-  if (!settings.neighbour_lists.empty()) use_neighbour_lists(project, settings);
-  project.neighbours.resize(scene.images.size());
-  project.sources.resize(scene.images.size());
-  for (std::size_t i = 0; i < scene.images.size(); ++i) {
-    if (!scene.images[i].calibrated) continue;
-    if (!project.preparations[i].usable()) {
-      log_warning("{}: left out: {}", scene.images[i].path, project.preparations[i].problem);
-      continue;
-    }
-    project.neighbours[i] = filter_neighbours(scene.images[i].neighbours, settings.selection);
-    project.sources[i] =
-        choose_source_views(project.neighbours[i], settings.number_views, settings.selection);
-    if (project.sources[i].empty())
-      log_warning("{}: left out: {}", scene.images[i].path,
-                  why_no_source_view(scene.images[i].neighbours, settings.selection));
-    else
-      project.references.push_back(i);
-  }
-  if (project.references.empty())
-    fail("{}: no image has neighbours to be matched with", settings.survey.files.scene.string());
+// As other_numbers(), of the filters.
+NamedNumbers filter_numbers(const MatchOptions& options) {
+  const auto& [speckle_difference, min_pixels] = options.speckles;
+  const auto& [max_gap, gap_difference] = options.gaps;
+  return {named("speckles.max_difference", speckle_difference),
+          named("gaps.max_difference", gap_difference)};
+}
+
+NamedNumbers all_numbers(const MatchOptions& options) {
+  NamedNumbers all = numbers_of_openmvs(options);
+  for (const NamedNumbers& more : {other_numbers(options), filter_numbers(options)})
+    all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+// A line for each number that differs from its default. The text is empty for the defaults.
+std::string changed_numbers(const MatchOptions& options) {
+  const NamedNumbers now = all_numbers(options), before = all_numbers({});
+  std::string text;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (now[i].value != before[i].value) text += fmt::format("{} {}\n", now[i].name, now[i].value);
+  return text;
 }
 
 }  // namespace
 
-survey::Channels channels_of(const Settings& settings) {
-  return needs_colors(settings) ? survey::Channels::both : survey::Channels::grey;
-}
-
-std::vector<std::size_t> part_of(std::span<const std::size_t> images, const Settings& settings) {
+std::vector<std::size_t> part_of(std::span<const std::size_t> images, const StageJob& job) {
   std::size_t begin = 0, end = images.size();
-  if (settings.parts > 0) {
-    end = images.size() * settings.part / settings.parts;
-    begin = images.size() * (settings.part - 1) / settings.parts;
+  if (job.parts > 0) {
+    end = images.size() * job.part / job.parts;
+    begin = images.size() * (job.part - 1) / job.parts;
   }
   return {images.begin() + static_cast<std::ptrdiff_t>(begin),
           images.begin() + static_cast<std::ptrdiff_t>(end)};
@@ -99,34 +121,29 @@ bool all_pinholes(const Project& project) {
       project.views, [](const View& view) { return view.camera.port || view.camera.distortion; });
 }
 
-fs::path housing_file(const Settings& settings) {
-  return io::housing_file(settings.survey.files);
+std::filesystem::path depth_map_path(const Project& project, std::size_t image) {
+  return project.options.files.working_folder / io::depth_map_name(project.views[image].id);
 }
 
-Project load_scene(const Settings& settings) {
-  require_memory_to_read(settings);
-  survey::Options options = settings.survey;
-  options.has_memory_limit = false;  // require_memory_to_read() has checked more than the scene
-  Project project;
-  static_cast<survey::Survey&>(project) = survey::open_scene(options);
-  project.lenses = io::lenses_of(project.scene, settings.output);
-  if (!settings.point_cloud.empty())
-    io::use_point_cloud(project.scene, project.frame, settings.point_cloud);
-  return project;
-}
-
-Project load_project(const Settings& settings, const SceneObserver& observer) {
-  Project project = load_scene(settings);
-  find_views(project);
-  check_ids(project);
-  select_views(project, settings, observer);
-  project.part = part_of(project.references, settings);
-  project.fingerprint = fingerprint(project, settings);
-  return project;
-}
-
-void write_cameras_beside_output(const Project& project, const Settings& settings) {
-  io::write_cameras_beside(settings.output, project, project.lenses, settings.survey.files);
+std::string fingerprint(const Project& project, const MatchOptions& options,
+                        const survey::KeptContents& kept) {
+  Fingerprint print;
+  // The number is the version of the matching method and of the defaults of its settings.
+  print.add("AxialMVS depth maps 12");
+  add_options(print, options, project.options.ignore_mask_label);
+  if (const std::string changed = changed_numbers(options); !changed.empty()) print.add(changed);
+  const std::vector<std::string> contents = survey::contents_of_views(project, kept);
+  for (std::size_t i = 0; i < project.views.size(); ++i) {
+    survey::add_view(print, project, i, contents[i]);
+    for (const auto* list : {&project.neighbours[i], &project.sources[i]}) {
+      print.add(static_cast<std::uint64_t>(list->size()));
+      for (const ViewScore& neighbour : *list) print.add(std::uint64_t{neighbour.image});
+    }
+    for (const std::uint32_t point : project.preparations[i].init_points)
+      for (const float value : project.scene.points[point].position)
+        print.add(static_cast<double>(value));
+  }
+  return print.hex();
 }
 
 }  // namespace axial::densify

@@ -7,11 +7,7 @@
 
 #include "base/log.h"
 #include "base/parallel.h"
-#include "densify/depth_stage.h"
-#include "densify/memory_limit.h"
 #include "densify/memory_plan.h"
-#include "densify/scene_memory.h"
-#include "densify/stage_bytes.h"
 #include "io/bytes/json.h"
 
 namespace axial::densify {
@@ -35,72 +31,62 @@ double million_pairs(const Project& project, const std::vector<std::vector<ViewS
   return sum;
 }
 
-std::vector<double> seconds_of_stages(const Project& project, const Settings& settings) {
+std::vector<double> seconds_of_stages(const Project& project, const MatchOptions& options) {
   const double pairs = million_pairs(project, project.sources);
-  const double sweeps = settings.matching.iterations / 2.0;
+  const double sweeps = options.iterations / 2.0;
   std::vector<double> seconds{pairs * kMatchSeconds * sweeps};
-  for (int pass = 0; pass < settings.geometric_iterations; ++pass)
+  for (int pass = 0; pass < options.geometric_iterations; ++pass)
     seconds.push_back(pairs * kGeometricSeconds);
-  if (settings.postprocess & kAdjust)
+  if (options.postprocess & kAdjust)
     seconds.push_back(million_pairs(project, project.neighbours) * kAdjustSeconds);
   return seconds;
 }
 
-std::size_t number_of_parts(const Settings& settings, std::size_t images, double longest) {
-  auto parts = static_cast<double>(settings.planned_parts);
-  if (settings.planned_parts == 0)
+std::size_t number_of_parts(std::size_t asked, std::size_t images, double longest) {
+  auto parts = static_cast<double>(asked);
+  if (asked == 0)
     parts = std::ceil(longest / (kSecondsOfPart * static_cast<double>(thread_count())));
   return static_cast<std::size_t>(std::clamp(parts, 1.0, static_cast<double>(images)));
 }
 
-JobWork job(double cpu_seconds, std::uint64_t bytes) {
+nlohmann::json work(double cpu_seconds, std::uint64_t bytes) {
   const std::uint64_t megabytes = bytes / kMegabyte + 1;
   // A run may exceed its limit by a tenth.
-  return {cpu_seconds, megabytes, megabytes + megabytes / 10};
+  return {{"cpu_seconds", std::ceil(cpu_seconds)},
+          {"max_memory_mb", megabytes},
+          {"memory_mb", megabytes + megabytes / 10}};
 }
 
-nlohmann::json written(const JobWork& work) {
-  return {{"cpu_seconds", std::ceil(work.cpu_seconds)},
-          {"max_memory_mb", work.max_memory},
-          {"memory_mb", work.memory}};
+// The least memory with which as many images as threads are processed at the same time.
+std::uint64_t memory_of(const Project& project, const Options& options) {
+  const ListLengths lists = longest_lists(project, options.matching, options.fusion);
+  const StageBytes bytes = bytes_of_stages(project, options, lists);
+  return std::max(
+      bytes.scene + options.survey.memory.program_bytes + least_bytes(bytes, lists, thread_count()),
+      least_memory_to_prepare(project.scene, options.survey, options.views));
 }
 
 }  // namespace
 
-WorkPlan plan_work(const Project& project, const Settings& settings) {
-  const ListLengths lists = longest_lists(project, settings);
-  const StageBytes bytes = bytes_of_stages(project, settings, lists);
-  const std::vector<double> seconds = seconds_of_stages(project, settings);
-  WorkPlan plan;
-  plan.images = project.references.size();
-  plan.threads = static_cast<unsigned>(thread_count());
-  plan.stages = stage_names(settings);
-  plan.parts = number_of_parts(settings, plan.images, *std::ranges::max_element(seconds));
-  // With less memory, fewer images than threads would be processed at the same time.
-  const std::uint64_t memory = std::max(
-      bytes.scene + settings.survey.memory.program_bytes + least_bytes(bytes, lists, plan.threads),
-      least_memory_to_prepare(project.scene, settings));
-  const double share =
-      std::ceil(static_cast<double>(plan.images) / static_cast<double>(plan.parts)) /
-      static_cast<double>(plan.images);
-  for (const double all : seconds) plan.per_part.push_back(job(all * share, memory));
-  plan.fusion = job(million_pairs(project, project.neighbours) * kFuseSeconds, memory);
-  return plan;
-}
-
-void write_work_plan(const std::filesystem::path& file, const Project& project,
-                     const Settings& settings) {
-  const WorkPlan plan = plan_work(project, settings);
-  nlohmann::json parts = nlohmann::json::object();
-  for (std::size_t i = 0; i < plan.stages.size(); ++i)
-    parts[plan.stages[i]] = written(plan.per_part[i]);
-  io::write_json(file, {{"images", plan.images},
-                        {"parts", plan.parts},
-                        {"threads", plan.threads},
-                        {"stages", plan.stages},
-                        {"per_part", parts},
-                        {"fusion", written(plan.fusion)}});
-  log_info("{}: {} images in {} parts", file.string(), plan.images, plan.parts);
+void write_work_plan(const Project& project, const Options& options, const PlanJob& job) {
+  const std::uint64_t memory = memory_of(project, options);
+  const std::vector<double> seconds = seconds_of_stages(project, options.matching);
+  const std::vector<std::string> names = stage_names(options.matching);
+  const std::size_t images = project.references.size();
+  const std::size_t parts = number_of_parts(job.parts, images, *std::ranges::max_element(seconds));
+  const auto all = static_cast<double>(images);
+  const double share = std::ceil(all / static_cast<double>(parts)) / all;
+  nlohmann::json per_part = nlohmann::json::object();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    per_part[names[i]] = work(seconds[i] * share, memory);
+  const double fusion = million_pairs(project, project.neighbours) * kFuseSeconds;
+  io::write_json(job.file, {{"images", images},
+                            {"parts", parts},
+                            {"threads", thread_count()},
+                            {"stages", names},
+                            {"per_part", per_part},
+                            {"fusion", work(fusion, memory)}});
+  log_info("{}: {} images in {} parts", job.file.string(), images, parts);
 }
 
 }  // namespace axial::densify

@@ -31,7 +31,7 @@ class Densify : public FloorTest {};
 
 TEST_F(Densify, MakesACloudOnTheSurfaceAndReportsIt) {
   SceneFacts facts{true, true, true};
-  const Report report = densify(settings_, [&](const SceneFacts& found) { facts = found; });
+  const Report report = densify(options_, [&](const SceneFacts& found) { facts = found; });
   EXPECT_FALSE(facts.behind_ports);
   EXPECT_FALSE(facts.own_region);
   EXPECT_FALSE(facts.region);  // the cameras do not surround an object
@@ -51,56 +51,46 @@ TEST_F(Densify, MakesACloudOnTheSurfaceAndReportsIt) {
     near += std::abs(place.norm() - depth) < 0.053 ? 1 : 0;
   }
   EXPECT_GT(near, cloud.size() * 9 / 10);
-  EXPECT_EQ(io::read_mvs(settings_.output, settings_.survey.files.working_folder).images.size(),
+  EXPECT_EQ(io::read_mvs(options_.output.scene, options_.survey.files.working_folder).images.size(),
             4u);
 }
 
 TEST_F(Densify, ASecondRunUsesTheDepthMapsOfTheFirst) {
-  densify(settings_);
+  densify(options_);
   const auto written = fs::last_write_time(map(2));
   const std::string cloud = read_file(folder_ / "out" / "dense.ply");
   fs::remove(map(1));
-  densify(settings_);
+  densify(options_);
   EXPECT_EQ(fs::last_write_time(map(2)), written);
   EXPECT_TRUE(fs::exists(map(1)));
   EXPECT_EQ(read_file(folder_ / "out" / "dense.ply"), cloud);
-  settings_.matching.iterations = 1;
-  densify(settings_);
+  options_.matching.iterations = 1;
+  densify(options_);
   EXPECT_NE(fs::last_write_time(map(2)), written);
-}
-
-// The least memory [MB] that these settings need, from the message that refuses less.
-std::uint64_t least_memory(Settings settings) {
-  settings.survey.memory.megabytes = 1;
-  const std::string refusal = test::error_of([&] { densify(settings); });
-  const std::string_view before = "this scene needs ";
-  const std::size_t at = refusal.find(before);
-  EXPECT_NE(at, std::string::npos) << refusal;
-  return at == std::string::npos ? 1 : std::stoull(refusal.substr(at + before.size()));
 }
 
 // With the least memory, one image at a time is matched, also by several threads: matching an image
 // needs more than the megabyte to which the least memory is rounded up.
 TEST_F(Densify, ThreadsAndMemoryDoNotChangeTheCloud) {
-  densify(settings_);
+  densify(options_);
   const std::string cloud = read_file(folder_ / "out" / "dense.ply");
   use_folder("other");
-  const std::uint64_t least = least_memory(settings_);
-  settings_.survey.memory.megabytes = least - 1;
-  EXPECT_THAT(test::error_of([&] { densify(settings_); }), HasSubstr("are too little"));
-  settings_.survey.memory.megabytes = least;
+  const std::uint64_t least = least_memory(options_);
+  options_.survey.memory.megabytes = least - 1;
+  EXPECT_THAT(test::error_of([&] { densify(options_); }), HasSubstr("are too little"));
+  options_.survey.memory.megabytes = least;
   for (const unsigned threads : {0u, 1u}) {
     use_folder("threads" + std::to_string(threads));
-    settings_.max_threads = threads;
-    densify(settings_);
-    EXPECT_EQ(read_file(settings_.survey.files.working_folder / "dense.ply"), cloud) << threads;
+    options_.max_threads = threads;
+    densify(options_);
+    EXPECT_EQ(read_file(options_.survey.files.working_folder / "dense.ply"), cloud) << threads;
   }
 }
 
 TEST_F(Densify, WithoutFusionTheSparsePointsAreTheCloud) {
-  settings_.fuse = false;
-  settings_.geometric_iterations = 0;
-  const Report report = densify(settings_);
+  options_.fusion.fuse = false;
+  options_.matching.geometric_iterations = 0;
+  const Report report = densify(options_);
   EXPECT_EQ(report.result, Result::sparse_cloud);
   EXPECT_EQ(report.points, points_);
   EXPECT_EQ(io::read_cloud_ply(report.cloud).size(), points_);
@@ -108,14 +98,13 @@ TEST_F(Densify, WithoutFusionTheSparsePointsAreTheCloud) {
 }
 
 TEST_F(Densify, ExportsAndListsMakeNoDepthMaps) {
-  settings_.export_number_views = 2;
-  Report report = densify(settings_);
+  options_.job = ExportJob{.export_number_views = 2};
+  Report report = densify(options_);
   EXPECT_EQ(report.result, Result::point_export);
   EXPECT_EQ(report.cloud, folder_ / "out" / "dense_2views.ply");
   EXPECT_EQ(report.points, points_);
-  settings_.export_number_views = 0;
-  settings_.neighbour_lists_output = folder_ / "lists.txt";
-  report = densify(settings_);
+  options_.job = NeighbourListsJob{folder_ / "lists.txt"};
+  report = densify(options_);
   EXPECT_EQ(report.result, Result::neighbour_lists);
   EXPECT_TRUE(report.cloud.empty());
   EXPECT_TRUE(fs::exists(folder_ / "lists.txt"));
@@ -123,58 +112,63 @@ TEST_F(Densify, ExportsAndListsMakeNoDepthMaps) {
 }
 
 TEST_F(Densify, RefusesToOverwriteInputs) {
-  const std::string scene = read_file(settings_.survey.files.scene);
-  settings_.output = settings_.survey.files.scene;
-  EXPECT_THAT(test::error_of([&] { densify(settings_); }),
-              HasSubstr(settings_.survey.files.scene.string()));
-  EXPECT_EQ(read_file(settings_.survey.files.scene), scene);
-  use_folder("out");
-  settings_.other_inputs = {folder_ / "out" / "dense.ply"};
-  write_atomically(settings_.other_inputs.front(), "the caller's");
-  EXPECT_THAT(test::error_of([&] { densify(settings_); }), HasSubstr("dense.ply"));
-  EXPECT_EQ(read_file(settings_.other_inputs.front()), "the caller's");
+  const std::string tile = "out/dense.tile2-3.ply";
+  const std::pair<std::string, std::function<void(Options&)>> cases[] = {
+      {"scene.mvs", [&](Options& to) { to.output.scene = to.survey.files.scene; }},
+      {"out/dense.ply", [](Options&) {}},
+      {tile, [](Options& to) { to.fusion.tiles = 3; }},
+      {tile, [](Options& to) { to.fusion.tiles = 3, to.job = TileJob{2}; }}};
+  for (const auto& [name, change] : cases) {
+    Options options = options_;
+    const fs::path file = folder_ / name;
+    if (!fs::exists(file)) write_atomically(file, "the caller's");
+    const std::string before = read_file(file);
+    options.output.other_inputs = {file};
+    change(options);
+    EXPECT_THAT(test::error_of([&] { densify(options); }), HasSubstr(file.filename().string()));
+    EXPECT_EQ(read_file(file), before);
+  }
 }
 
 TEST_F(Densify, ErrorsNameSettingsInTheWordsOfTheCaller) {
   fs::create_directories(folder_ / "no_masks");
-  Settings memory = settings_, output = settings_, report = settings_, lists = settings_,
-           masks = settings_, housing = settings_, maps = settings_, pinholes = settings_;
-  memory.survey.memory.megabytes = 1;
-  output.output = settings_.survey.files.scene;
-  report.report = settings_.survey.files.scene;
-  lists.neighbour_lists_output = settings_.survey.files.scene;
-  masks.survey.mask_folder = folder_ / "no_masks";
-  masks.survey.ignore_mask_label = 0;
-  housing.survey.files.ports = io::PortChoice::required;
-  maps.make_maps = false;
-  pinholes.pinhole_export = folder_ / "pinholes";
-  const std::pair<std::string, Settings*> cases[] = {
-      {"max_memory 1: ", &memory},  {"output ", &output},
-      {"report ", &report},         {"neighbour_lists_output ", &lists},
-      {"mask_folder ", &masks},     {"refractive needs", &housing},
-      {"make_maps false: ", &maps}, {"pinhole_export ", &pinholes}};
-  for (const auto& [words, settings] : cases) {
-    const auto error = [&] { return test::error_of([&] { densify(*settings); }); };
+  const fs::path scene = options_.survey.files.scene;
+  const std::pair<const char*, std::function<void(Options&)>> cases[] = {
+      {"max_memory 1: ", [](Options& to) { to.survey.memory.megabytes = 1; }},
+      {"output ", [&](Options& to) { to.output.scene = scene; }},
+      {"report ", [&](Options& to) { to.output.report = scene; }},
+      {"neighbour_lists_output ", [&](Options& to) { to.job = NeighbourListsJob{scene}; }},
+      {"plan ", [&](Options& to) { to.job = PlanJob{scene}; }},
+      {"mask_folder ",
+       [&](Options& to) {
+         to.survey.mask_folder = folder_ / "no_masks";
+         to.survey.ignore_mask_label = 0;
+       }},
+      {"refractive needs", [](Options& to) { to.survey.files.ports = io::PortChoice::required; }},
+      {"make_maps false: ", [](Options& to) { to.matching.make_maps = false; }},
+      {"pinhole_export ", [&](Options& to) { to.output.pinhole_export = folder_ / "pinholes"; }}};
+  for (const auto& [words, change] : cases) {
+    Options options = options_;
+    change(options);
+    const auto error = [&] { return test::error_of([&] { densify(options); }); };
     EXPECT_THAT(error(), AllOf(HasSubstr(words), Not(ContainsRegex("--[a-z]"))));
-    settings->survey.files.name_of = [](std::string_view setting) {
-      return fmt::format("<{}", setting);
-    };
-    EXPECT_THAT(error(), HasSubstr("<" + words));
+    options.survey.files.name_of = [](std::string_view name) { return fmt::format("<{}", name); };
+    EXPECT_THAT(error(), HasSubstr(std::string("<") + words));
   }
 }
 
 TEST_F(Densify, WarningsNameSettingsInTheWordsOfTheCaller) {
-  settings_.survey.mask_folder = folder_;
-  settings_.neighbour_lists_output = folder_ / "lists.txt";
+  options_.survey.mask_folder = folder_;
+  options_.job = NeighbourListsJob{folder_ / "lists.txt"};
   const LogCapture log;
-  densify(settings_);
+  densify(options_);
   EXPECT_THAT(log.text(), HasSubstr("mask_folder " + folder_.string() +
                                     ": is not used, because ignore_mask_label is -1\n"));
   EXPECT_THAT(log.text(), Not(ContainsRegex("--[a-z]")));
-  settings_.survey.files.name_of = [](std::string_view setting) {
+  options_.survey.files.name_of = [](std::string_view setting) {
     return fmt::format("<{}>", setting);
   };
-  densify(settings_);
+  densify(options_);
   EXPECT_THAT(log.text(), HasSubstr("because <ignore_mask_label> is -1\n"));
 }
 

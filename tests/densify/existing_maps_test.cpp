@@ -7,7 +7,6 @@
 
 #include <filesystem>
 
-#include "densify/depth_stage.h"
 #include "support/analytic_scene.h"
 #include "support/empty_folder.h"
 #include "support/error_of.h"
@@ -23,7 +22,7 @@ using testing::HasSubstr;
 class ExistingMapsTest : public testing::Test {
  protected:
   ExistingMapsTest() {
-    settings_.survey.files.working_folder = test::empty_folder();
+    project_.options.files.working_folder = test::empty_folder();
     const std::vector<Pose> poses = test::circle_of_poses(3);
     project_.scene = test::scene_of(test::dry_camera(), poses);
     for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -42,10 +41,9 @@ class ExistingMapsTest : public testing::Test {
   void make_foreign(std::size_t image) { fs::remove(file(image).string() + ".json"); }
   void make_damaged(std::size_t image) { fs::resize_file(file(image), 100); }
 
-  fs::path file(std::size_t image) const { return depth_map_path(project_, settings_, image); }
-  ExistingMaps found() const { return find_existing_maps(project_, settings_); }
+  fs::path file(std::size_t image) const { return depth_map_path(project_, image); }
+  ExistingMaps found() const { return find_existing_maps(project_, true); }
 
-  Settings settings_;
   Project project_;
 };
 
@@ -54,36 +52,35 @@ TEST_F(ExistingMapsTest, TellsTheOriginOfEachMap) {
   make_foreign(1);
   make_damaged(2);
   const ExistingMaps maps = found();
-  EXPECT_EQ(maps[0].origin, io::DmapOrigin::ours);
-  EXPECT_EQ(maps[0].made_from, "print photometric");
-  EXPECT_EQ(maps[1].origin, io::DmapOrigin::foreign);
-  EXPECT_EQ(maps[2].origin, io::DmapOrigin::damaged);
+  EXPECT_EQ(maps.states[0].origin, io::DmapOrigin::ours);
+  EXPECT_EQ(maps.states[0].made_from, "print photometric");
+  EXPECT_EQ(maps.states[1].origin, io::DmapOrigin::foreign);
+  EXPECT_EQ(maps.states[2].origin, io::DmapOrigin::damaged);
   project_.part = {0, 2};
-  EXPECT_EQ(found()[1].origin, io::DmapOrigin::none);
+  EXPECT_EQ(found().states[1].origin, io::DmapOrigin::none);
 }
 
 TEST_F(ExistingMapsTest, ForeignMapsAreOverwrittenOnlyIfAllowed) {
   for (const std::size_t image : {0, 1}) write_map(image);
   make_damaged(0);
-  EXPECT_NO_THROW(check_overwriting(project_, settings_, found()));
+  EXPECT_NO_THROW(check_overwriting(project_, false, found()));
   make_foreign(1);
   const auto error = [&] {
-    return test::error_of([&] { check_overwriting(project_, settings_, found()); });
+    return test::error_of([&] { check_overwriting(project_, false, found()); });
   };
   EXPECT_THAT(error(), AllOf(HasSubstr(file(1).string()), HasSubstr("1 of 3"),
                              HasSubstr("make_maps false"), HasSubstr("overwrite_dmaps true")));
   // A foreign map counts as that of a pinhole: behind a port it cannot be fused.
   project_.scene.images[1].camera = test::behind_port(test::dry_camera());
   EXPECT_THAT(error(), AllOf(Not(HasSubstr("make_maps false")), HasSubstr("overwrite_dmaps true")));
-  settings_.overwrite_dmaps = true;
-  EXPECT_NO_THROW(check_overwriting(project_, settings_, found()));
+  EXPECT_NO_THROW(check_overwriting(project_, true, found()));
 }
 
 TEST_F(ExistingMapsTest, KeepsImagesWithMapsAtTheResolutionOfTheirMaps) {
   write_map(0);
   write_map(2, test::dry_camera().resized(48, 36));
   make_foreign(2);
-  keep_images_with_maps(project_, settings_, found());
+  keep_images_with_maps(project_, found());
   EXPECT_EQ(project_.references, (std::vector<std::size_t>{0, 2}));
   EXPECT_EQ(project_.views[0].camera.width, 96);
   EXPECT_EQ(project_.views[2].camera.width, 48);
@@ -92,7 +89,7 @@ TEST_F(ExistingMapsTest, KeepsImagesWithMapsAtTheResolutionOfTheirMaps) {
 TEST_F(ExistingMapsTest, RefusesMapsThatCannotBeFused) {
   const auto error = [&] {
     Project project = project_;
-    return test::error_of([&] { keep_images_with_maps(project, settings_, found()); });
+    return test::error_of([&] { keep_images_with_maps(project, found()); });
   };
   EXPECT_THAT(error(), HasSubstr("no depth map found: " + file(0).string()));
   write_map(1);

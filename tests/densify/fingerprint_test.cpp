@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the fingerprint of the depth maps depends on.
-#include "densify/fingerprint.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -15,6 +13,7 @@
 
 #include "base/atomic_file.h"
 #include "base/parallel.h"
+#include "densify/project.h"
 #include "support/analytic_scene.h"
 #include "support/empty_folder.h"
 
@@ -23,8 +22,12 @@ namespace {
 
 struct Input {
   Project project;
-  Settings settings;
+  MatchOptions matching;
 };
+
+std::string print_of(const Input& input) {
+  return fingerprint(input.project, input.matching);
+}
 
 // Two images that see one point. The contents of the files do not matter here.
 class FingerprintTest : public testing::Test {
@@ -49,7 +52,7 @@ class FingerprintTest : public testing::Test {
   std::string after(const std::function<void(Input&)>& change) const {
     Input changed = input_;
     change(changed);
-    return fingerprint(changed.project, changed.settings);
+    return print_of(changed);
   }
 
   const std::filesystem::path folder_ = test::empty_folder();
@@ -60,16 +63,8 @@ TEST_F(FingerprintTest, ChangesWithEverythingThatTheDepthMapsDependOn) {
   using Port = refractive::FlatPort<double>;
   const std::vector<std::function<void(Input&)>> changes{
       [](Input&) {},
-      [](Input& in) { in.settings.matching.iterations = 5; },
-      [](Input& in) { in.settings.matching.sub_resolution_levels = 0; },
-      [](Input& in) { in.settings.matching.warp = depth::Warp::homography; },
-      [](Input& in) { in.settings.projection = ProjectionMethod::line_search; },
-      [](Input& in) { in.settings.geometric_iterations = 1; },
-      [](Input& in) { in.settings.postprocess = kSpeckles; },
-      [](Input& in) { in.settings.survey.ignore_mask_label = 3; },
-      [](Input& in) { in.settings.matching.keep_cost = 1.5f; },
-      [](Input& in) { in.settings.speckles.min_pixels = 7; },
-      [](Input& in) { in.settings.gaps.max_gap = 3; },
+      [](Input& in) { in.matching.warp = depth::Warp::homography; },
+      [](Input& in) { in.matching.projection = ProjectionMethod::line_search; },
       [](Input& in) { in.project.views[1].id = 7; },
       [](Input& in) { in.project.views[1].camera.lens.fx += 1e-9; },
       [](Input& in) { in.project.views[1].camera.width = 48; },
@@ -91,15 +86,12 @@ TEST_F(FingerprintTest, ChangesWithEverythingThatTheDepthMapsDependOn) {
     EXPECT_TRUE(prints.insert(after(changes[i])).second) << "change " << i;
 }
 
-TEST_F(FingerprintTest, DoesNotDependOnFusionMemoryAndThreads) {
+TEST_F(FingerprintTest, DoesNotDependOnMemoryThreadsAndPictures) {
   const std::string print = after([](Input&) {});
   EXPECT_EQ(print, after([](Input& in) {
-              in.settings.fusion.min_views = 7;
-              in.settings.estimate_colors = 0;
-              in.settings.crop_to_roi = false;
-              in.settings.survey.memory.megabytes = 1000;
-              in.settings.max_threads = 1;
-              in.settings.output = "elsewhere.mvs";
+              in.project.options.memory.megabytes = 1000;
+              in.matching.overwrite_dmaps = true;
+              in.matching.pictures = Pictures::final_maps;
             }));
   const ThreadLimit one(1);
   EXPECT_EQ(print, after([](Input&) {}));
@@ -144,25 +136,25 @@ Input written_out_input(const std::filesystem::path& image) {
 // all maps are made again, which only a new version of the matching method may do. The expected
 // digests are those of XXH3 for the same bytes, computed by another program.
 TEST(KnownFingerprints, StayAsTheyAre) {
-  using Change = void (*)(Settings&);
+  using Change = void (*)(MatchOptions&);
   const Input input = written_out_input(test::empty_folder() / "image");
   for (const auto& [expected, change] : std::vector<std::pair<std::string, Change>>{
-           {"ba0b4fc4b3102bf03b1ccba744836aee", [](Settings&) {}},
-           {"4120aeb0ce35a60bc1a716167f8a0093", [](Settings& in) { in.matching.iterations = 5; }},
-           {"064875871470e66d1404172d734859ad", [](Settings& in) { in.matching.keep_cost = 1.5f; }},
-           {"a448bba4a16354dc50fa6fc81d9e5ab8",
-            [](Settings& in) { in.matching.min_texture = 4e-4f; }},
+           {"ba0b4fc4b3102bf03b1ccba744836aee", [](MatchOptions&) {}},
+           {"4120aeb0ce35a60bc1a716167f8a0093", [](MatchOptions& in) { in.iterations = 5; }},
+           {"064875871470e66d1404172d734859ad", [](MatchOptions& in) { in.keep_cost = 1.5f; }},
+           {"a448bba4a16354dc50fa6fc81d9e5ab8", [](MatchOptions& in) { in.min_texture = 4e-4f; }},
            {"e6d250b4b4fc37952db240ca8b27c592",
-            [](Settings& in) { in.matching.geometric_weight = 0.5f; }},
-           {"9e44a999a5285088a2793d4fd689f1c5", [](Settings& in) { in.matching.later_pairs = 3; }},
-           {"595a05b0ad487da2e77b53879931991c", [](Settings& in) { in.speckles.min_pixels = 7; }},
-           {"f13552691e99fb6f6e3c659e086f3f15", [](Settings& in) { in.gaps.max_gap = 3; }},
-           {"de88be94ea1d2c157de0478c1e0706b8", [](Settings& in) {
-              in.matching.keep_cost = 1.5f;
+            [](MatchOptions& in) { in.geometric_weight = 0.5f; }},
+           {"9e44a999a5285088a2793d4fd689f1c5", [](MatchOptions& in) { in.later_pairs = 3; }},
+           {"595a05b0ad487da2e77b53879931991c",
+            [](MatchOptions& in) { in.speckles.min_pixels = 7; }},
+           {"f13552691e99fb6f6e3c659e086f3f15", [](MatchOptions& in) { in.gaps.max_gap = 3; }},
+           {"de88be94ea1d2c157de0478c1e0706b8", [](MatchOptions& in) {
+              in.keep_cost = 1.5f;
               in.speckles.min_pixels = 7;
               in.gaps.max_gap = 3;
             }}}) {
-    Settings changed = input.settings;
+    MatchOptions changed = input.matching;
     change(changed);
     EXPECT_EQ(fingerprint(input.project, changed), expected);
   }
@@ -171,43 +163,43 @@ TEST(KnownFingerprints, StayAsTheyAre) {
 // Calls visit(number) for each number that depth maps depend on. The structured bindings name all
 // members: a new member does not compile until the test names it.
 template <class Visit>
-void each_number(Settings& settings, const Visit& visit) {
+void each_number(Input& input, const Visit& visit) {
   auto& [warp, levels, iterations, coarsest_side, sigma_color, sigma_space, min_texture, smoothness,
          prior_texture, coarse_pairs, first_pairs, later_pairs, last_pairs, refinement_shrink,
          restart_trials, refinement_pixels, refinement_angle, good_cost, fair_cost, bad_cost,
          search_planes, search_pairs, certain_cost, keep_cost, geometric_weight, geometric_limit] =
-      settings.matching;
+      static_cast<depth::PatchMatchOptions&>(input.matching);
   auto& [depth_sigma, depth_bonus, normal_sigma, normal_bonus] = smoothness;
-  auto& [speckle_difference, min_pixels] = settings.speckles;
-  auto& [max_gap, gap_difference] = settings.gaps;
+  auto& [speckle_difference, min_pixels] = input.matching.speckles;
+  auto& [max_gap, gap_difference] = input.matching.gaps;
   const auto each = [&](auto&... numbers) { (visit(numbers), ...); };
   each(levels, iterations, coarsest_side, sigma_color, sigma_space, min_texture, prior_texture,
        coarse_pairs, first_pairs, later_pairs, last_pairs, refinement_shrink, restart_trials,
        refinement_pixels, refinement_angle, good_cost, fair_cost, bad_cost, search_planes,
        search_pairs, certain_cost, keep_cost, geometric_weight, geometric_limit);
   each(depth_sigma, depth_bonus, normal_sigma, normal_bonus, speckle_difference, min_pixels,
-       max_gap, gap_difference, settings.geometric_iterations, settings.postprocess,
-       settings.survey.ignore_mask_label);
+       max_gap, gap_difference, input.matching.geometric_iterations, input.matching.postprocess,
+       input.project.options.ignore_mask_label);
 }
 
 // Adds `steps` to one of the numbers.
-void step(Settings& settings, int place, int steps) {
+void step(Input& input, int place, int steps) {
   int i = 0;
-  each_number(settings, [&](auto& number) {
+  each_number(input, [&](auto& number) {
     using Number = std::remove_reference_t<decltype(number)>;
     if (i++ == place) number = static_cast<Number>(number + static_cast<Number>(steps));
   });
 }
 
-std::vector<double> numbers(Settings settings) {
+std::vector<double> numbers(Input input) {
   std::vector<double> all;
-  each_number(settings, [&](const auto& number) { all.push_back(static_cast<double>(number)); });
+  each_number(input, [&](const auto& number) { all.push_back(static_cast<double>(number)); });
   return all;
 }
 
 // A fingerprint contains only the numbers that differ from their defaults. If this test fails,
 // raise the version in fingerprint(), so that maps made with the earlier defaults are not used.
-TEST(FingerprintOfSettings, DefaultsAreThoseOfTheVersion) {
+TEST(FingerprintOfOptions, DefaultsAreThoseOfTheVersion) {
   const std::vector<double> defaults{
       1,    2,    64,       0.1,    3,     3.6e-5, 0.002, 4,     2,    2,   0,    0.65,
       3,    2,    0.488692, 0.594,  0.81,  0.99,   4,     2,     0.15, 1.2, 0.25, 4,
@@ -215,26 +207,26 @@ TEST(FingerprintOfSettings, DefaultsAreThoseOfTheVersion) {
   EXPECT_THAT(numbers({}), testing::Pointwise(testing::DoubleNear(1e-6), defaults));
 }
 
-TEST(FingerprintOfSettings, ChangesWithEachNumber) {
+TEST(FingerprintOfOptions, ChangesWithEachNumber) {
   const std::size_t count = numbers({}).size();
-  std::set<std::string> prints{fingerprint({}, {})};
+  std::set<std::string> prints{print_of({})};
   for (std::size_t place = 0; place < count; ++place) {
-    Settings changed;
+    Input changed;
     step(changed, static_cast<int>(place), 1);
-    EXPECT_TRUE(prints.insert(fingerprint({}, changed)).second) << "number " << place;
+    EXPECT_TRUE(prints.insert(print_of(changed)).second) << "number " << place;
   }
 }
 
-RC_GTEST_PROP(FingerprintOfSettings, IsTheSameForEqualNumbersAlone, ()) {
+RC_GTEST_PROP(FingerprintOfOptions, IsTheSameForEqualNumbersAlone, ()) {
   const auto count = static_cast<int>(numbers({}).size());
-  const auto some_step = [&](Settings& settings) {
-    step(settings, *rc::gen::inRange(0, count), *rc::gen::inRange(0, 3));
+  const auto some_step = [&](Input& input) {
+    step(input, *rc::gen::inRange(0, count), *rc::gen::inRange(0, 3));
   };
-  Settings one;
+  Input one;
   for (int i = 0; i < 4; ++i) some_step(one);
-  Settings other = one;
+  Input other = one;
   some_step(other);
-  RC_ASSERT((fingerprint({}, one) == fingerprint({}, other)) == (numbers(one) == numbers(other)));
+  RC_ASSERT((print_of(one) == print_of(other)) == (numbers(one) == numbers(other)));
 }
 
 }  // namespace

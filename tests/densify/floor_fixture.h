@@ -9,11 +9,12 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-#include "densify/settings.h"
+#include "densify/densify.h"
 #include "io/images/image.h"
 #include "io/openmvs/mvs.h"
 #include "scene/scene.h"
 #include "support/empty_folder.h"
+#include "support/error_of.h"
 #include "support/textured_scene.h"
 
 namespace axial::densify {
@@ -46,8 +47,8 @@ class FloorTest : public testing::Test {
     for (int y = 4; y < 120; y += 7)
       for (int x = 4; x < 160; x += 7) add_point(scene, x, y);
     points_ = scene.points.size();
-    settings_.survey.files.scene = folder_ / "scene.mvs";
-    io::write_mvs(settings_.survey.files.scene, scene, folder_);
+    options_.survey.files.scene = folder_ / "scene.mvs";
+    io::write_mvs(options_.survey.files.scene, scene, folder_);
     use_folder("out");
   }
 
@@ -66,19 +67,29 @@ class FloorTest : public testing::Test {
   }
 
   void use_folder(const std::string& name) {
-    settings_.survey.files.working_folder = folder_ / name;
-    settings_.output = folder_ / name / "dense.mvs";
-    std::filesystem::create_directories(settings_.survey.files.working_folder);
+    options_.survey.files.working_folder = folder_ / name;
+    options_.output.scene = folder_ / name / "dense.mvs";
+    std::filesystem::create_directories(options_.survey.files.working_folder);
+  }
+
+  // The least memory [MB] that a run needs, from the message that refuses less.
+  static std::uint64_t least_memory(Options options) {
+    options.survey.memory.megabytes = 1;
+    const std::string refusal = test::error_of([&] { densify(options); });
+    const std::string before = "this scene needs ";
+    const std::size_t at = refusal.find(before);
+    EXPECT_NE(at, std::string::npos) << refusal;
+    return at == std::string::npos ? 1 : std::stoull(refusal.substr(at + before.size()));
   }
 
   std::filesystem::path map(int image) const {
-    return settings_.survey.files.working_folder / ("depth000" + std::to_string(image) + ".dmap");
+    return options_.survey.files.working_folder / ("depth000" + std::to_string(image) + ".dmap");
   }
 
   const test::TexturedScene floor_{.cell = 0.04};  // three pixels
   const std::filesystem::path folder_ = test::empty_folder();
   std::size_t points_ = 0;
-  Settings settings_;
+  Options options_;
 };
 
 }  // namespace axial::densify

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Clouds that are fused tile by tile, by one run or by several.
-#include "densify/fusion_tiles.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,10 +8,9 @@
 
 #include "base/atomic_file.h"
 #include "base/log.h"
-#include "densify/densify.h"
 #include "densify/floor_fixture.h"
-#include "densify/stage_bytes.h"
-#include "densify/tile_files.h"
+#include "densify/memory_plan.h"
+#include "densify/tiles.h"
 #include "io/ply/ply.h"
 #include "support/error_of.h"
 
@@ -27,33 +24,37 @@ using testing::Not;
 class FusionTiles : public FloorTest {
  protected:
   FusionTiles() {
-    settings_.matching.iterations = 1;
-    settings_.geometric_iterations = 1;
+    options_.matching.iterations = 1;
+    options_.matching.geometric_iterations = 1;
   }
 
   std::string cloud() const {
-    return read_file(fs::path(settings_.output).replace_extension(".ply"));
+    return read_file(fs::path(options_.output.scene).replace_extension(".ply"));
   }
 
   // Runs with other settings and returns the cloud.
   std::string cloud_in(std::size_t tiles, unsigned threads = 0) {
-    Settings settings = settings_;
-    settings.fusion_tiles = tiles;
-    settings.max_threads = threads;
-    densify(settings);
+    Options options = options_;
+    options.fusion.tiles = tiles;
+    options.max_threads = threads;
+    densify(options);
     return cloud();
   }
 
-  Settings with_tile(std::size_t tile, std::size_t tiles) const {
-    Settings settings = settings_;
-    settings.tile = tile;
-    settings.fusion_tiles = tiles;
-    return settings;
+  Options with_tile(std::size_t tile, std::size_t tiles) const {
+    Options options = options_;
+    options.job = TileJob{tile};
+    options.fusion.tiles = tiles;
+    return options;
+  }
+
+  fs::path tile_path(std::size_t tile, std::size_t tiles) const {
+    return tile_file(options_.output.scene, tile, tiles);
   }
 
   std::size_t tile_files() const {
     std::size_t count = 0;
-    for (const auto& entry : fs::directory_iterator(settings_.survey.files.working_folder))
+    for (const auto& entry : fs::directory_iterator(options_.survey.files.working_folder))
       count += entry.path().filename().string().find(".tile") != std::string::npos ? 1 : 0;
     return count;
   }
@@ -61,7 +62,7 @@ class FusionTiles : public FloorTest {
 
 TEST_F(FusionTiles, GiveNearlyTheCloudOfOnePiece) {
   cloud_in(1);
-  const fs::path ply = fs::path(settings_.output).replace_extension(".ply");
+  const fs::path ply = fs::path(options_.output.scene).replace_extension(".ply");
   const PointCloud whole = io::read_cloud_ply(ply);
   cloud_in(3);
   const PointCloud tiled = io::read_cloud_ply(ply);
@@ -81,32 +82,32 @@ TEST_F(FusionTiles, GiveNearlyTheCloudOfOnePiece) {
 }
 
 TEST_F(FusionTiles, MadeInAnyOrderGiveTheBytesOfOneRun) {
-  settings_.fusion.errors = true;
-  settings_.report = settings_.survey.files.working_folder / "report.json";
+  options_.fusion.errors = true;
+  options_.output.report = options_.survey.files.working_folder / "report.json";
   const auto counts = [&] {  // the rest depends on whether the run made the maps
-    const std::string report = read_file(settings_.report);
+    const std::string report = read_file(options_.output.report);
     return report.substr(report.find("\"fusion\""));
   };
   const std::string expected = cloud_in(3), counted = counts();
   EXPECT_EQ(tile_files(), 0u);
-  fs::remove(fs::path(settings_.output).replace_extension(".ply"));
+  fs::remove(fs::path(options_.output.scene).replace_extension(".ply"));
   std::size_t points = 0;
   for (const std::size_t tile : {3u, 1u, 2u}) {
     const Report made = densify(with_tile(tile, 3));
     EXPECT_EQ(made.result, Result::tile);
-    EXPECT_EQ(made.cloud, tile_file(with_tile(tile, 3), tile));
+    EXPECT_EQ(made.cloud, tile_path(tile, 3));
     EXPECT_EQ(io::read_cloud_ply(made.cloud).size(), made.points);
     points += made.points;
   }
   EXPECT_EQ(tile_files(), 6u);
-  EXPECT_FALSE(fs::exists(fs::path(settings_.output).replace_extension(".ply")));
+  EXPECT_FALSE(fs::exists(fs::path(options_.output.scene).replace_extension(".ply")));
   const LogCapture log;
   EXPECT_EQ(cloud_in(3), expected);
   EXPECT_THAT(log.text(), HasSubstr("tile2-3.ply: exists already"));
   EXPECT_THAT(log.text(), Not(HasSubstr("Tile ")));  // none was fused again
   EXPECT_EQ(counts(), counted);
   EXPECT_EQ(tile_files(), 0u);
-  EXPECT_EQ(io::read_cloud_ply(fs::path(settings_.output).replace_extension(".ply")).size(),
+  EXPECT_EQ(io::read_cloud_ply(fs::path(options_.output.scene).replace_extension(".ply")).size(),
             points);
 }
 
@@ -114,9 +115,9 @@ TEST_F(FusionTiles, AStoppedRunGoesOnWithTheFirstMissingTile) {
   const std::string expected = cloud_in(3);
   densify(with_tile(1, 3));
   densify(with_tile(2, 3));
-  fs::resize_file(tile_file(with_tile(2, 3), 2), 2000);  // damaged
+  fs::resize_file(tile_path(2, 3), 2000);  // damaged
   densify(with_tile(3, 3));
-  fs::remove(tile_file(with_tile(3, 3), 3).string() + ".json");  // killed before the side file
+  fs::remove(tile_path(3, 3).string() + ".json");  // killed before the side file
   const LogCapture log;
   EXPECT_EQ(cloud_in(3), expected);
   EXPECT_THAT(log.text(), HasSubstr("tile1-3.ply: exists already"));
@@ -127,13 +128,13 @@ TEST_F(FusionTiles, AStoppedRunGoesOnWithTheFirstMissingTile) {
 TEST_F(FusionTiles, OfOtherSettingsOrMapsAreMadeAgain) {
   cloud_in(2);
   densify(with_tile(1, 2));
-  settings_.fusion.min_views = 2;
+  options_.fusion.min_views = 2;
   const std::string two_views = cloud_in(2);
   densify(with_tile(1, 2));
   EXPECT_EQ(cloud_in(2), two_views);
   densify(with_tile(1, 2));
   fs::remove(map(2));
-  settings_.make_maps = false;  // the tile was made from four maps
+  options_.matching.make_maps = false;  // the tile was made from four maps
   const LogCapture log;
   cloud_in(2);
   EXPECT_THAT(log.text(), HasSubstr("Tile 1 of 2: "));
@@ -143,11 +144,9 @@ TEST_F(FusionTiles, AreTheSameForAnyThreadsAndMemory) {
   const std::string expected = cloud_in(4);
   EXPECT_EQ(cloud_in(4, 1), expected);
   EXPECT_EQ(cloud_in(4, 2), expected);
-  settings_.survey.memory.megabytes = 1;
-  const std::string refusal = test::error_of([&] { cloud_in(4); });
-  const std::size_t at = refusal.find("needs ");
-  ASSERT_NE(at, std::string::npos) << refusal;
-  settings_.survey.memory.megabytes = std::stoull(refusal.substr(at + 6));
+  Options options = options_;
+  options.fusion.tiles = 4;
+  options_.survey.memory.megabytes = least_memory(options);
   EXPECT_EQ(cloud_in(4), expected);
 }
 
@@ -166,29 +165,21 @@ TEST_F(FusionTiles, NeedCompleteDepthMapsOfTheSameSettings) {
   EXPECT_THAT(refusal(1), HasSubstr("depth0000.dmap: the depth map does not exist, and tile"));
   for (const auto& [passes, filters] :
        {std::pair{0, 0u}, std::pair{1, kSpeckles}, std::pair{1, kSpeckles | kAdjust}}) {
-    settings_.geometric_iterations = passes;
-    settings_.postprocess = filters;
-    settings_.fuse = false;
-    densify(settings_);
-    settings_.fuse = true;
+    options_.matching.geometric_iterations = passes;
+    options_.matching.postprocess = filters;
+    options_.fusion.fuse = false;
+    densify(options_);
+    options_.fusion.fuse = true;
     EXPECT_GT(densify(with_tile(2, 2)).points, 1000u);
   }
-  settings_.matching.iterations = 2;
+  options_.matching.iterations = 2;
   EXPECT_THAT(refusal(1), HasSubstr("other input or with other options"));
-  settings_.matching.iterations = 1;
+  options_.matching.iterations = 1;
   fs::resize_file(map(2), 1000);
   EXPECT_THAT(refusal(2), HasSubstr("depth0002.dmap: the depth map is damaged"));
   fs::remove(map(2));
   EXPECT_THAT(refusal(2), HasSubstr("depth0002.dmap: the depth map does not exist"));
   EXPECT_EQ(tile_files(), 2u);  // of the last run that was not refused
-}
-
-TEST_F(FusionTiles, NeverOverwriteInputs) {
-  settings_.other_inputs = {tile_file(with_tile(2, 3), 2)};
-  write_atomically(settings_.other_inputs.front(), "the caller's");
-  EXPECT_THAT(test::error_of([&] { densify(with_tile(2, 3)); }), HasSubstr("tile2-3.ply"));
-  EXPECT_THAT(test::error_of([&] { cloud_in(3); }), HasSubstr("tile2-3.ply"));
-  EXPECT_EQ(read_file(settings_.other_inputs.front()), "the caller's");
 }
 
 // A strip of views 1 m apart. Each sees the points below it and below the next view.
@@ -215,9 +206,9 @@ Project strip(std::size_t count) {
 
 TEST(TilesOf, AStripDivideItsLength) {
   const Project project = strip(100);
-  Settings settings;
-  settings.fusion_tiles = 4;
-  const auto parts = tiles_of(project, settings);
+  FusionOptions options;
+  options.tiles = 4;
+  const auto parts = tiles_of(project, options);
   ASSERT_EQ(parts.size(), 4u);
   for (int i = 1; i < 4; ++i) {
     const auto tile = static_cast<std::size_t>(i);
@@ -226,16 +217,16 @@ TEST(TilesOf, AStripDivideItsLength) {
     EXPECT_EQ(parts[tile].tile.low.y(), -cloud::Tile::kInfinity);
     // The margin follows from the depth, which is 2 m to 2.2 m.
     const double margin = parts[tile].tile.low.x() - parts[tile].reach.low.x();
-    EXPECT_NEAR(margin, kMarginInThresholds * settings.fusion.depth_threshold * 2.1, 0.02);
+    EXPECT_NEAR(margin, kMarginInThresholds * options.depth_threshold * 2.1, 0.02);
   }
 }
 
 TEST(TilesOf, AStripNeedMarksOfTheirViewsOnly) {
   const Project project = strip(100);
-  Settings settings;
-  EXPECT_EQ(longest_lists(project, settings).marked, 100u);
-  settings.fusion_tiles = 4;
-  const std::size_t marked = longest_lists(project, settings).marked;
+  FusionOptions options;
+  EXPECT_EQ(longest_lists(project, {}, options).marked, 100u);
+  options.tiles = 4;
+  const std::size_t marked = longest_lists(project, {}, options).marked;
   EXPECT_GE(marked, 25u + 2);  // the views of a tile and their neighbours
   EXPECT_LE(marked, 25u + 6);
 }
@@ -246,11 +237,11 @@ TEST(TilesOf, ACroppedSceneDivideTheRegion) {
   region.centre = {10, 0, 0};
   region.half_extent = {10, 1, 1};
   project.scene.region = region;
-  Settings settings;
-  settings.fusion_tiles = 2;
-  EXPECT_NEAR(tiles_of(project, settings)[1].tile.low.x(), 10, 0.2);
-  settings.crop_to_roi = false;
-  EXPECT_NEAR(tiles_of(project, settings)[1].tile.low.x(), 50, 0.2);
+  FusionOptions options;
+  options.tiles = 2;
+  EXPECT_NEAR(tiles_of(project, options)[1].tile.low.x(), 10, 0.2);
+  options.crop_to_roi = false;
+  EXPECT_NEAR(tiles_of(project, options)[1].tile.low.x(), 50, 0.2);
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 
 #include "base/parallel.h"
 #include "cloud/fuse.h"
-#include "densify/agreement_check.h"
 #include "densify/pinhole_export.h"
 #include "depth/filters.h"
 #include "depth/patch_match.h"
@@ -45,19 +44,19 @@ Project sixty_images() {
   return project;
 }
 
-Settings with_everything() {
-  Settings settings;
-  settings.postprocess = kSpeckles | kGaps | kAdjust;
-  settings.pinhole_export = "folder";
-  return settings;
+Options with_everything() {
+  Options options;
+  options.matching.postprocess = kSpeckles | kGaps | kAdjust;
+  options.output.pinhole_export = "folder";
+  return options;
 }
 
 struct Case {
   Project project = sixty_images();
-  Settings settings = with_everything();
+  Options options = with_everything();
 
-  ListLengths lists() const { return longest_lists(project, settings); }
-  StageBytes bytes() const { return bytes_of_stages(project, settings, lists()); }
+  ListLengths lists() const { return longest_lists(project, options.matching, options.fusion); }
+  StageBytes bytes() const { return bytes_of_stages(project, options, lists()); }
 };
 
 // What the stages hold in memory besides the scene, if they work as planned.
@@ -65,8 +64,8 @@ class Held {
  public:
   Held(const Case& from, const MemoryPlan& plan)
       : plan_(plan),
-        colors_(needs_colors(from.settings)),
-        adjusts_((from.settings.postprocess & kAdjust) != 0),
+        colors_(from.options.fusion.needs_colors()),
+        adjusts_((from.options.matching.postprocess & kAdjust) != 0),
         masks_(std::ranges::any_of(from.project.views, &View::masked)),
         view_(from.project.views.back()) {}
 
@@ -131,11 +130,11 @@ TEST(StageBytes, AreThoseOfTheStagesForTheLargestImageAndTheLongestLists) {
   EXPECT_EQ(lists.fused, 1 + kNeighbours);
 }
 
-TEST(StageBytes, DependOnWhatTheSettingsAskFor) {
+TEST(StageBytes, DependOnWhatTheOptionsAskFor) {
   Case few;
-  few.settings.postprocess = kSpeckles;
-  few.settings.estimate_colors = 0;
-  few.settings.pinhole_export.clear();
+  few.options.matching.postprocess = kSpeckles;
+  few.options.fusion.estimate_colors = 0;
+  few.options.output.pinhole_export.clear();
   few.project.views[3].mask = "mask.png";
   EXPECT_EQ(few.bytes().adjust, 0u);
   EXPECT_EQ(few.bytes().exported, 0u);
@@ -156,7 +155,7 @@ std::vector<std::uint64_t> rooms(const Case& from) {
 
 TEST(MemoryPlan, NoStageNeedsMoreThanTheRoom) {
   Case without_adjusting;
-  without_adjusting.settings.postprocess = kSpeckles;
+  without_adjusting.options.matching.postprocess = kSpeckles;
   Case with_masks;
   with_masks.project.views[3].mask = "mask.png";
   for (const Case& from : {Case(), without_adjusting, with_masks})
@@ -223,16 +222,16 @@ TEST(MemoryPlan, MoreRoomAndThreadsHaveLimits) {
 TEST(MemoryPlan, RefusesLessThanTheLeastAndNamesIt) {
   Case from;
   const ThreadLimit one(1);
-  from.settings.survey.memory.megabytes = 100;
-  const std::string error = test::error_of([&] { plan_memory(from.project, from.settings); });
+  from.options.survey.memory.megabytes = 100;
+  const std::string error = test::error_of([&] { plan_memory(from.project, from.options); });
   EXPECT_THAT(error,
               testing::StartsWith("max_memory 100: 100 MB are too little, this scene needs "));
   const std::uint64_t needed = std::stoull(error.substr(error.find("needs ") + 6));
   // The need contains what the process has allocated, which may differ a little at the next call.
-  from.settings.survey.memory.megabytes = needed + 1;
-  EXPECT_EQ(plan_memory(from.project, from.settings).in_flight, 1u);
-  from.settings.survey.memory.megabytes = needed - 2;
-  EXPECT_THAT(test::error_of([&] { plan_memory(from.project, from.settings); }),
+  from.options.survey.memory.megabytes = needed + 1;
+  EXPECT_EQ(plan_memory(from.project, from.options).in_flight, 1u);
+  from.options.survey.memory.megabytes = needed - 2;
+  EXPECT_THAT(test::error_of([&] { plan_memory(from.project, from.options); }),
               testing::HasSubstr("are too little"));
 }
 

@@ -137,6 +137,17 @@ class Resume : public testing::Test {
     return found;
   }
 
+  // The files that a run leaves.
+  std::map<std::string, std::string> files_of_a_run() {
+    run();
+    return files();
+  }
+
+  // Removes the files, so that the next run begins with nothing.
+  void remove_files() const {
+    for (const auto& [name, content] : files()) fs::remove(folder_ / name);
+  }
+
   // All calls of a run that begins with nothing, from `place` on.
   std::vector<Call> calls_from(const Call& place) const {
     std::vector<Call> all;
@@ -166,10 +177,9 @@ TEST_F(Resume, ARunMakesEveryMapOnceAndLeavesTheFinalMaps) {
 }
 
 TEST_F(Resume, AStoppedRunMakesExactlyTheMissingMapsAndTheSameBytes) {
-  run();
-  const auto expected = files();
+  const auto expected = files_of_a_run();
   for (const Call& place : calls_from({"first", 0})) {
-    for (const auto& [name, content] : expected) fs::remove(folder_ / name);
+    remove_files();
     run_until(place);
     run();
     EXPECT_EQ(calls_, calls_from(place)) << place.first << place.second;
@@ -178,8 +188,7 @@ TEST_F(Resume, AStoppedRunMakesExactlyTheMissingMapsAndTheSameBytes) {
 }
 
 TEST_F(Resume, ACompleteRunMakesNothing) {
-  run();
-  const auto expected = files();
+  const auto expected = files_of_a_run();
   run();
   EXPECT_TRUE(calls_.empty());
   EXPECT_EQ(files(), expected);
@@ -216,10 +225,9 @@ std::vector<Spoiled> ways_to_spoil(const std::string& stage) {
 
 // The files of the first stage are gone when the second is complete, so they are made again first.
 TEST_F(Resume, ASpoiledMapOfAStageIsMadeAgain) {
-  run();
-  const auto expected = files();
+  const auto expected = files_of_a_run();
   for (const Spoiled& way : ways_to_spoil("second")) {
-    for (const auto& [name, content] : expected) fs::remove(folder_ / name);
+    remove_files();
     run_until({"third", 0});
     ASSERT_TRUE(fs::exists(file_of("second", 2)));
     ASSERT_FALSE(fs::exists(file_of("first", 2)));
@@ -238,8 +246,7 @@ TEST_F(Resume, ASpoiledMapOfAStageIsMadeAgain) {
 }
 
 TEST_F(Resume, ASpoiledFinalMapIsMadeAgain) {
-  run();
-  const auto expected = files();
+  const auto expected = files_of_a_run();
   for (const Spoiled& way : ways_to_spoil("third")) {
     way.spoil(final_file(2));
     run();
@@ -253,29 +260,25 @@ TEST_F(Resume, ASpoiledFinalMapIsMadeAgain) {
 
 TEST_F(Resume, TheMapsOfTheFirstStageOrTheLatestCompleteOnesAreCheckedOnce) {
   using Checks = std::vector<std::pair<bool, float>>;
-  run();
-  EXPECT_EQ(checks_, (Checks{{true, 4}}));
-  run();
-  EXPECT_EQ(checks_, (Checks{{false, 21}}));
-}
-
-TEST_F(Resume, AContinuedRunChecksTheLatestCompleteMaps) {
-  using Checks = std::vector<std::pair<bool, float>>;
+  const auto expect_checks = [&](const Checks& expected) {
+    run();
+    EXPECT_EQ(checks_, expected);
+  };
+  expect_checks({{true, 4}});
+  expect_checks({{false, 21}});
+  remove_files();
   run_until({"second", 2});
-  run();
-  EXPECT_EQ(checks_, (Checks{{true, 4}}));
-  for (const auto& [name, content] : files()) fs::remove(folder_ / name);
+  expect_checks({{true, 4}});
+  remove_files();
   run_until({"third", 2});
-  run();
-  EXPECT_EQ(checks_, (Checks{{false, 12}}));
+  expect_checks({{false, 12}});
 }
 
 TEST_F(Resume, PartsInAnyOrderGiveTheBytesOfOneRun) {
-  run();
-  const auto expected = files();
+  const auto expected = files_of_a_run();
   const std::vector<std::size_t> parts[] = {{0}, {2, 3}};
   for (const bool reversed : {false, true}) {
-    for (const auto& [name, content] : files()) fs::remove(folder_ / name);
+    remove_files();
     for (std::size_t stage = 0; stage < 3; ++stage)
       for (const bool second : {reversed, !reversed}) {
         run_part(stage, parts[second ? 1 : 0]);
@@ -289,8 +292,7 @@ TEST_F(Resume, PartsInAnyOrderGiveTheBytesOfOneRun) {
 }
 
 TEST_F(Resume, APartMakesNothingIfALaterStageIsComplete) {
-  run();
-  const auto expected = files();
+  const auto expected = files_of_a_run();
   for (std::size_t stage = 0; stage < 3; ++stage) {
     run_part(stage, {0});
     EXPECT_TRUE(calls_.empty()) << stage;
@@ -317,9 +319,8 @@ TEST_F(Resume, APartNeedsTheMapsOfThePreviousStage) {
 }
 
 TEST_F(Resume, ARunEndsAfterTheStageThatIsAskedFor) {
-  run();
-  const auto expected = files();
-  for (const auto& [name, content] : expected) fs::remove(folder_ / name);
+  const auto expected = files_of_a_run();
+  remove_files();
   run("print", 2);
   EXPECT_TRUE(fs::exists(file_of("second", 3)));
   EXPECT_FALSE(fs::exists(final_file(3)));

@@ -23,6 +23,8 @@
 namespace axial::densify {
 namespace {
 
+using survey::Channels;
+
 std::uint64_t bytes_of(const std::vector<cv::Mat>& images) {
   std::uint64_t bytes = 0;
   for (const cv::Mat& image : images) bytes += image.total() * image.elemSize();
@@ -41,10 +43,9 @@ TEST(StageMemory, OfImagesAndMapsIsExact) {
   project.views[0].header = io::read_image_header(folder / "image.png");
   for (const bool mask : {false, true})
     for (const bool color : {false, true}) {
-      Settings settings;
-      settings.estimate_colors = color ? 2 : 0;
       project.views[0].mask = mask ? folder / "mask.png" : std::filesystem::path();
-      const auto image = survey::ImageStore(project, channels_of(settings), 1).get(0);
+      const auto image =
+          survey::ImageStore(project, color ? Channels::both : Channels::grey, 1).get(0);
       EXPECT_EQ(survey::bytes_needed(survey::PixelsSize{72 * 96, mask, color}),
                 bytes_of({image->grey, image->color, image->mask}));
     }

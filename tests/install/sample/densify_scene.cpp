@@ -8,11 +8,11 @@
 #include "densify/densify.h"
 
 int main(int, char** argv) try {
-  axial::densify::Settings settings;
-  settings.survey.files.scene = std::filesystem::absolute(argv[1]);
-  settings.survey.files.working_folder = std::filesystem::absolute(argv[2]);
-  settings.output = settings.survey.files.working_folder / "dense.mvs";
-  const axial::densify::Report report = axial::densify::densify(settings);
+  axial::densify::Options options;
+  options.survey.files.scene = std::filesystem::absolute(argv[1]);
+  options.survey.files.working_folder = std::filesystem::absolute(argv[2]);
+  options.output.scene = options.survey.files.working_folder / "dense.mvs";
+  const axial::densify::Report report = axial::densify::densify(options);
   std::printf("%zu points in %s\n", report.points, report.cloud.c_str());
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
