@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string>
 
+#include "base/console.h"
 #include "base/log.h"
 #include "densify/densify.h"
 #include "options.h"
@@ -29,7 +30,8 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   const densify::Report report = densify::densify(
       options.settings,
-      [&](const densify::SceneFacts& facts) { warn_of_options_without_effect(options, facts); });
+      [&](const densify::SceneFacts& facts) { warn_of_options_without_effect(options, facts); },
+      Context(console_events()));
   say_who_may_read(report, options);
   return 0;
 }

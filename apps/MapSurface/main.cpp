@@ -307,7 +307,7 @@ int run(int argc, char** argv) {
   warn_of_local_coordinates(settings, survey.frame);
   belong::check_surface(survey.scene, belong::shape_of(mesh.mesh), {settings.mesh, survey.file()},
                         context);
-  survey::find_photographs(survey);
+  survey::find_photographs(survey, context);
   survey.add_inputs(io::files_of_mesh(settings.mesh));
   survey.scene = {};
   return_freed_memory();
@@ -326,7 +326,7 @@ int run(int argc, char** argv) {
     else
       facts = look_at_faces(mesh.mesh, settings, photographs, errors, context);
     return_freed_memory();
-    already_named([&] { photographs.report(); });
+    already_named([&] { photographs.report(context); });
     write(settings, mesh, facts, place, crs, context);
   });
   return 0;

@@ -31,9 +31,9 @@ fs::path state_file(const Options& options) {
   return fs::path(options.output) += ".state";
 }
 
-survey::Survey open(const Options& options) {
+survey::Survey open(const Options& options, const Context& context) {
   survey::Survey survey = survey::open_scene(options.survey);
-  survey::find_photographs(survey);
+  survey::find_photographs(survey, context);
   survey.add_inputs(io::files_of_mesh(options.mesh));
   survey.keep_inputs(std::vector{options.output, state_file(options)}, "--output-file");
   return survey;
@@ -100,12 +100,12 @@ refine::State first_state(Mesh mesh, const Options& options, const std::string& 
 Mesh refine_mesh(Mesh mesh, const survey::Survey& survey, const Options& options,
                  refine::StateOfRun& of_run, const Context& context) {
   const std::string fingerprint =
-      refine::fingerprint(mesh, options.refine, survey::fingerprint_of_views(survey));
+      refine::fingerprint(mesh, options.refine, survey::fingerprint_of_views(survey, context));
   refine::State state = first_state(std::move(mesh), options, fingerprint, context);
   return_freed_memory();
   const Shares shares = share_out_memory(options, survey);
   survey::ImageStore images(survey, survey::Channels::grey, shares.images);
-  images.check_all(1);
+  images.check_all(1, context);
   refine::Options settings = options.refine;
   settings.max_bytes = shares.for_refinement;
   settings.bytes_afterwards = mesh::bytes_to_clean(1);
@@ -118,7 +118,7 @@ Mesh refine_mesh(Mesh mesh, const survey::Survey& survey, const Options& options
         },
         settings, [&](const refine::State& now) { of_run.write(now, fingerprint); }, context);
   });
-  survey.photograph_check->report();
+  survey.photograph_check->report(context);
   const refine::Report& report = state.report;
   context.info("{} vertices measured in {} pairs of images; median displacement {:.3g} m",
                report.measured, report.pairs, report.moved);
@@ -162,7 +162,7 @@ int run(int argc, char** argv) {
   const Context context(console_events());
   const ThreadLimit threads(options.parsed.common.max_threads);
   const OutputLock lock = lock_output(options.output);
-  const survey::Survey survey = open(options);
+  const survey::Survey survey = open(options, context);
   bool has_marks = false;
   Mesh mesh = read_mesh(options, survey.frame, has_marks, context);
   belong::check_surface(survey.scene, belong::shape_of(mesh), {options.mesh, survey.file()},

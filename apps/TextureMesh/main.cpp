@@ -122,7 +122,7 @@ void texture_and_write(const Settings& settings, const survey::Survey& survey, M
         std::move(mesh), survey::posed_cameras(survey), texture::source_of(photographs), options,
         [&](std::size_t tile, const TexturedMesh& textured) {
           return_freed_memory();
-          if (tile == 0) already_named([&] { photographs.report(); });
+          if (tile == 0) already_named([&] { photographs.report(context); });
           keep_inputs(settings, survey, tile, textured.textures.size());
           written.textures += textured.textures.size();
           written.faces += textured.mesh.faces.size();
@@ -159,7 +159,7 @@ int run(int argc, char** argv) {
   belong::check_surface(survey.scene, belong::shape_of(mesh), {settings.mesh, survey.file()},
                         context);
   mesh = simplified(settings, std::move(mesh));
-  survey::find_photographs(survey);
+  survey::find_photographs(survey, context);
   survey.add_inputs(io::files_of_mesh(settings.mesh));
   for (std::size_t tile = 0; tile < settings.texture.tiles; ++tile)
     keep_inputs(settings, survey, tile, 1);

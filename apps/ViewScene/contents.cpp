@@ -187,7 +187,7 @@ Json write_mesh(const Contents& contents, const Options& options, const fs::path
   return mesh;
 }
 
-Json write_cameras(const Contents& contents, const fs::path& staging) {
+Json write_cameras(const Contents& contents, const fs::path& staging, const Context& context) {
   const survey::Survey& survey = contents.survey;
   const auto checks = points_to_check(contents);
   Json cameras = Json::array();
@@ -203,7 +203,7 @@ Json write_cameras(const Contents& contents, const fs::path& staging) {
     camera["photo"] = name;
     camera["photo_size"] = {pixels.cols, pixels.rows};
   });
-  photographs.report();
+  photographs.report(context);
   return cameras;
 }
 
@@ -228,7 +228,7 @@ Json files_of(const Options& options) {
 Contents read_contents(const Options& options, const Context& context) {
   Contents contents;
   contents.survey = survey::open_scene(options.survey);
-  survey::find_photographs(contents.survey);
+  survey::find_photographs(contents.survey, context);
   if (!options.cloud.empty()) read_cloud(options, contents, context);
   read_mesh(options, contents, context);
   check_sides(options, contents, context);
@@ -237,7 +237,8 @@ Contents read_contents(const Options& options, const Context& context) {
   return contents;
 }
 
-void write_contents(const Contents& contents, const Options& options, const fs::path& staging) {
+void write_contents(const Contents& contents, const Options& options, const fs::path& staging,
+                    const Context& context) {
   make_folder(staging / "data");
   make_folder(staging / "photographs");
   const survey::Survey& scene = contents.survey;
@@ -255,7 +256,7 @@ void write_contents(const Contents& contents, const Options& options, const fs::
   add_survey(contents, options, staging, data);
   if (!options.sfm_model.empty()) data["residuals"] = residual_data(scene, options.sfm_model);
   if (!contents.distances.empty()) data["truth"] = options.truth.filename().string();
-  data["cameras"] = write_cameras(contents, staging);
+  data["cameras"] = write_cameras(contents, staging, context);
   data["chunks"] = write_cloud(contents, options, staging);
   if (contents.mesh || contents.textured) data["mesh"] = write_mesh(contents, options, staging);
   write_scene_file(staging, data);

@@ -34,6 +34,6 @@ Contents read_contents(const Options& options, const Context& context);
 // cannot be read or has another shape than its camera, for views of the cloud that the scene does
 // not have, and for a file that cannot be written.
 void write_contents(const Contents& contents, const Options& options,
-                    const std::filesystem::path& staging);
+                    const std::filesystem::path& staging, const Context& context);
 
 }  // namespace axial::apps

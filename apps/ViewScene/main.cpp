@@ -23,15 +23,16 @@ int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
+  const Context context(console_events());
   const ThreadLimit limit(options.parsed.common.max_threads);
   const fs::path page = page_folder();
   const OutputLock lock = lock_output(options.report);
   require_own_folder(options.report);
-  const Contents contents = read_contents(options, Context(console_events()));
+  const Contents contents = read_contents(options, context);
   write_own_folder(options.report, [&](const fs::path& staging) {
     for (const char* file : {"index.html", "style.css", "viewer.js"})
       fs::copy_file(page / file, staging / file);
-    write_contents(contents, options, staging);
+    write_contents(contents, options, staging, context);
   });
   log_info("wrote {}", (options.report / "index.html").string());
   return 0;

@@ -12,20 +12,31 @@
 
 namespace axial {
 
+namespace {
+
+// If an item of a loop throws, oneTBB ends the loop early. By default it also ends all loops inside
+// the other items of this loop, without an exception: these items would go on with half of their
+// results. A loop with a context of its own goes to its end.
+constexpr auto kOwn = tbb::task_group_context::isolated;
+
+}  // namespace
+
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body,
                   std::size_t grain) {
+  tbb::task_group_context context(kOwn);
   tbb::this_task_arena::isolate([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, grain),
         [&](const tbb::blocked_range<std::size_t>& range) {
           for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
         },
-        tbb::simple_partitioner());
+        tbb::simple_partitioner(), context);
   });
 }
 
 void for_each_in_flight(std::size_t count, std::size_t in_flight,
                         const std::function<void(std::size_t)>& body) {
+  tbb::task_group_context context(kOwn);
   std::size_t next = 0;
   const auto begin_next = [&](tbb::flow_control& control) {
     if (next == count) control.stop();
@@ -34,7 +45,8 @@ void for_each_in_flight(std::size_t count, std::size_t in_flight,
   tbb::parallel_pipeline(
       std::max<std::size_t>(in_flight, 1),
       tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, begin_next) &
-          tbb::make_filter<std::size_t, void>(tbb::filter_mode::parallel, body));
+          tbb::make_filter<std::size_t, void>(tbb::filter_mode::parallel, body),
+      context);
 }
 
 std::size_t thread_count() {

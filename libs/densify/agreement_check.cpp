@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "base/log.h"
 #include "base/parallel.h"
 #include "base/shared_cache.h"
 #include "depth/agreement.h"
@@ -69,7 +68,7 @@ std::string likely_causes(const Project& project) {
              : "a missing " + project.name_of("housing") + ", the lens, or the poses";
 }
 
-void say(const Project& project, const Agreement& found) {
+void say(const Project& project, const Agreement& found, const Context& context) {
   const AgreementLimits limits;
   const std::string points = fmt::format(
       "the median deviation of {} sparse points from the depth maps is {:.2f} px ({:.2f} %), of "
@@ -78,17 +77,17 @@ void say(const Project& project, const Agreement& found) {
   const std::string pixels = fmt::format("{:.0f} % of {} pixels agree with a neighbour's map",
                                          100 * found.consistent, found.asked);
   const Disagreement wrong = judge(found, limits);
-  if (!wrong.cameras()) log_info("Agreement: {}; {}", points, pixels);
+  if (!wrong.cameras()) context.info("Agreement: {}; {}", points, pixels);
   const std::string scores = fmt::format(
       "patches at {} sparse points match with a median score of {:.2f} (usual: over {})",
       found.scored, found.score, limits.score);
   if (!wrong.cameras() && wrong.score)
-    log_warning(
+    context.warning(
         "The photographs do not seem to show the scene: {}. Check that the photographs belong to "
         "the poses",
         scores);
   if (!wrong.cameras()) return;
-  log_warning(
+  context.warning(
       "Cameras and photographs do not seem to belong together: {} (usual: below {} and {}); {} "
       "(usual: over {:.0f} %){}. Likely causes: {}{}",
       points, limits.pixels, limits.systematic, pixels, 100 * limits.consistent,
@@ -123,10 +122,10 @@ void write_report(const std::filesystem::path& file, const Agreement& found) {
 
 void check_agreement(const Project& project, const MemoryPlan& plan, bool photometric,
                      const std::function<DepthMap(std::size_t image)>& read_map,
-                     const std::filesystem::path& report) {
+                     const std::filesystem::path& report, const Context& context) {
   Agreement found = measure(project, plan, read_map);
   if (!photometric) found.scored = 0;
-  say(project, found);
+  say(project, found, context);
   if (!report.empty()) write_report(report, found);
 }
 

@@ -10,7 +10,6 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/log.h"
 #include "base/same_file.h"
 #include "cloud/visibility.h"
 #include "io/openmvs/mvs.h"
@@ -37,6 +36,7 @@ struct PointExport {
   const ExportJob& job;
   const OutputOptions& output;
   const std::vector<fs::path>& inputs;
+  const Context& context;
 
   io::PlyPlacement placement() const { return {project.frame, output.double_precision}; }
 
@@ -48,8 +48,9 @@ struct PointExport {
   }
 };
 
-WrittenCloud told(const fs::path& ply, const Scene& scene) {
-  log_info("{}: {} points", ply.string(), scene.points.size());
+WrittenCloud told(const PointExport& to, const fs::path& ply) {
+  const Scene& scene = to.project.scene;
+  to.context.info("{}: {} points", ply.string(), scene.points.size());
   return {ply, scene.points.size()};
 }
 
@@ -62,7 +63,7 @@ WrittenCloud write(const PointExport& to, const std::string& suffix, bool with_s
     io::write_cameras_beside(scene, project, project.lenses, project.options.files);
     io::write_mvs(scene, project.scene, project.options.files.working_folder);
   }
-  return told(ply, project.scene);
+  return told(to, ply);
 }
 
 WrittenCloud export_filtered(const PointExport& to) {
@@ -109,7 +110,7 @@ WrittenCloud export_scales(const PointExport& to) {
   std::vector<cloud::PointScale> scales = cloud::scales_of_points(scene);
   for (cloud::PointScale& scale : scales) scale.scale *= static_cast<float>(to.job.estimate_scale);
   write_scales(ply, scene, scales, to.placement());
-  return told(ply, scene);
+  return told(to, ply);
 }
 
 }  // namespace
@@ -131,9 +132,9 @@ void keep_points(Scene& scene, const std::function<bool(std::size_t point)>& kep
 }
 
 WrittenCloud export_cloud(Project project, const ExportJob& job, const OutputOptions& output,
-                          const std::vector<fs::path>& inputs) {
+                          const std::vector<fs::path>& inputs, const Context& context) {
   if (project.scene.points.empty()) fail("{}: has no points to export", project.file().string());
-  const PointExport to{project, job, output, inputs};
+  const PointExport to{project, job, output, inputs, context};
   if (job.filter_point_cloud < 0) return export_filtered(to);
   if (job.export_number_views != 0) return export_number_of_views(to);
   return export_scales(to);

@@ -37,6 +37,6 @@ struct WrittenCloud {
 // written. `project`: the result of load_scene(). Precondition: ExportJob::any(). Throws an Error
 // if the scene has no points, if an output is one of `inputs`, or if an output cannot be written.
 WrittenCloud export_cloud(Project project, const ExportJob& job, const OutputOptions& output,
-                          const std::vector<std::filesystem::path>& inputs);
+                          const std::vector<std::filesystem::path>& inputs, const Context& context);
 
 }  // namespace axial::densify

@@ -3,7 +3,6 @@
 
 #include <set>
 
-#include "base/log.h"
 #include "base/memory.h"
 #include "base/output_lock.h"
 #include "base/parallel.h"
@@ -34,23 +33,27 @@ survey::KeptContents kept_contents(const fs::path& working_folder, const Job& jo
   return {working_folder / "depth_inputs.json", is_kept, is_kept && !is_part};
 }
 
-Project load_with_fingerprint(const Options& options, const SceneObserver& observer) {
-  Project project = load_project(options.survey, options.views, options.output.scene, observer);
+Project load_with_fingerprint(const Options& options, const SceneObserver& observer,
+                              const Context& context) {
+  Project project =
+      load_project(options.survey, options.views, options.output.scene, observer, context);
   const auto* stage = options.job_as<StageJob>();
   project.part = part_of(project.references, stage ? *stage : StageJob());
   const fs::path& folder = options.survey.files.working_folder;
-  project.fingerprint = fingerprint(project, options.matching, kept_contents(folder, options.job));
+  project.fingerprint =
+      fingerprint(project, options.matching, kept_contents(folder, options.job), context);
   return project;
 }
 
-ExistingMaps checked_maps(Project& project, const MatchOptions& options, bool for_tile) {
+ExistingMaps checked_maps(Project& project, const MatchOptions& options, bool for_tile,
+                          const Context& context) {
   ExistingMaps existing = find_existing_maps(project, options.make_maps);
   if (!options.make_maps)
-    keep_images_with_maps(project, existing);
+    keep_images_with_maps(project, existing, context);
   else if (for_tile)
     require_final_maps(project, options, existing);
   else
-    check_overwriting(project, options.overwrite_dmaps, existing);
+    check_overwriting(project, options.overwrite_dmaps, existing, context);
   return existing;
 }
 
@@ -88,18 +91,22 @@ void remove_depth_maps(const Project& project) {
 // A run that makes or uses depth maps, after all checks and before the first map is made.
 struct MapRun {
   const Options& options;
+  const Context& context;
   Project project;
   ExistingMaps existing;
   OutputLock lock;
   MemoryPlan plan;
 
-  MapRun(const Options& of_run, const RunFiles& files, const SceneObserver& observer)
+  MapRun(const Options& of_run, const RunFiles& files, const SceneObserver& observer,
+         const Context& of_caller)
       : options(of_run),
-        project(load_with_fingerprint(options, observer)),
-        existing(checked_maps(project, options.matching, options.job_as<TileJob>() != nullptr)),
+        context(of_caller),
+        project(load_with_fingerprint(options, observer, context)),
+        existing(
+            checked_maps(project, options.matching, options.job_as<TileJob>() != nullptr, context)),
         lock(options.survey.files.working_folder / "depth_maps",
              use_of_maps(project, options, existing)),
-        plan(plan_memory(project, options)) {
+        plan(plan_memory(project, options, context)) {
     check_outputs(project, files, options.matching.pictures);
     if (const fs::path& folder = options.output.pinhole_export; !folder.empty())
       check_pinhole_export(project, folder);
@@ -115,16 +122,17 @@ struct MapRun {
     const auto* job = options.job_as<StageJob>();
     // The first stage reads the images of its part. Later stages need not check them again.
     if (!job || job->parts == 0)
-      images.check_all(plan.decodes);
+      images.check_all(plan.decodes, context);
     else if (stages_until(job->until, options.matching) == 1)
-      images.check(images_of_part(project), plan.decodes);
+      images.check(images_of_part(project), plan.decodes, context);
     const fs::path& report = options.output.report;
     if (options.matching.make_maps)
-      return make_depth_maps({project, existing, plan, images}, options.matching, job, report);
+      return make_depth_maps({project, existing, plan, images, context}, options.matching, job,
+                             report);
     const auto read_map = [&](std::size_t image) {
       return read_final_map(project, existing, image, images.mask(image));
     };
-    check_agreement(project, plan, false, read_map, report);
+    check_agreement(project, plan, false, read_map, report, context);
   }
 };
 
@@ -132,33 +140,34 @@ struct MapRun {
 struct JobRun {
   const Options& options;
   const SceneObserver& observer;
+  const Context& context;
   const RunFiles files;
 
   Report operator()(const ExportJob& job) const {
     const fs::path& points = options.views.point_cloud;
     const WrittenCloud cloud =
         export_cloud(load_scene(options.survey, points, options.output.scene, true), job,
-                     options.output, files.inputs);
+                     options.output, files.inputs, context);
     return {Result::point_export, cloud.file, cloud.points};
   }
 
   Report operator()(const NeighbourListsJob& job) const {
     const Project project =
-        load_project(options.survey, options.views, options.output.scene, observer);
+        load_project(options.survey, options.views, options.output.scene, observer, context);
     check_outputs(project, files, options.matching.pictures);
     write_neighbour_lists(job.file, project.scene);
     return {Result::neighbour_lists, {}};
   }
 
   Report operator()(const PlanJob& job) const {
-    const Project project = load_with_fingerprint(options, observer);
+    const Project project = load_with_fingerprint(options, observer, context);
     check_outputs(project, files, options.matching.pictures);
-    write_work_plan(project, options, job);
+    write_work_plan(project, options, job, context);
     return {Result::plan, {}};
   }
 
   Report operator()(const StageJob&) const {
-    const MapRun run(options, files, observer);
+    const MapRun run(options, files, observer, context);
     survey::ImageStore images = run.images();
     run.prepare_maps(images);
     return {Result::stage, {}, 0, run.project.part.size()};
@@ -166,9 +175,9 @@ struct JobRun {
 
   // Depth maps and images were checked when the maps were made.
   Report operator()(const TileJob& job) const {
-    const MapRun run(options, files, observer);
+    const MapRun run(options, files, observer, context);
     survey::ImageStore images = run.images();
-    const std::size_t points = write_tile({run.project, run.existing, run.plan, images},
+    const std::size_t points = write_tile({run.project, run.existing, run.plan, images, context},
                                           options.fusion, options.output, job.tile);
     return {Result::tile, tile_file(options.output.scene, job.tile, options.fusion.tiles), points,
             run.project.references.size(), true};
@@ -176,18 +185,18 @@ struct JobRun {
 
   Report operator()(const WholeRun&) const {
     const bool fuse = options.fusion.fuse;
-    MapRun run(options, files, observer);
+    MapRun run(options, files, observer, context);
     const fs::path ply = fs::path(options.output.scene).replace_extension(".ply");
     const std::size_t points = make_cloud(run, ply);
     write_scene(run.project);
-    log_info("{}: {} points", ply.string(), points);
+    context.info("{}: {} points", ply.string(), points);
     if (fuse && points == 0)
-      log_warning(
+      context.warning(
           "The cloud is empty: no point was seen by {} views (see {}), or masks and the region of "
           "interest exclude all points",
           options.fusion.min_views, options.name_of("fusion.min_views"));
     if (!options.output.pinhole_export.empty())
-      export_pinholes(run.project, options.output, run.existing, run.plan.exports);
+      export_pinholes(run.project, options.output, run.existing, run.plan.exports, context);
     if (fuse) remove_tiles(options.output.scene, options.fusion.tiles);
     if (fuse && options.fusion.remove_dmaps) remove_depth_maps(run.project);
     return {fuse ? Result::dense_cloud : Result::sparse_cloud, ply, points,
@@ -202,7 +211,8 @@ struct JobRun {
     survey::ImageStore images = run.images();
     run.prepare_maps(images);
     if (options.fusion.fuse)
-      return write_cloud({project, run.existing, run.plan, images}, options.fusion, options.output);
+      return write_cloud({project, run.existing, run.plan, images, context}, options.fusion,
+                         options.output);
     io::write_cloud_ply(ply, cloud_of(project.scene), true,
                         {project.frame, options.output.double_precision});
     return project.scene.points.size();
@@ -218,13 +228,13 @@ struct JobRun {
 
 }  // namespace
 
-Report densify(const Options& options, const SceneObserver& observer) {
+Report densify(const Options& options, const SceneObserver& observer, const Context& context) {
   check(options);
   share_one_heap();
   const ThreadLimit threads(options.max_threads);
   // If its folder cannot be made, require_writable reports it.
   const OutputLock lock = lock_output(options.output.scene, use_of_output(options));
-  const JobRun run{options, observer, files_of(options)};
+  const JobRun run{options, observer, context, files_of(options)};
   check_outputs(run.files, options.survey.files);
   return std::visit(run, options.job);
 }

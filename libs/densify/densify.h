@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 
+#include "base/context.h"
 #include "densify/options.h"
 
 namespace axial::densify {
@@ -49,7 +50,8 @@ struct Report {
 // * With TileJob the run makes only one tile of the cloud. With FusionOptions::tiles the run makes
 //   the cloud from all tiles. A tile needs complete depth maps. Its points are those of the cloud
 //   in one piece, except for a few near the borders of the tile (tiles.h).
-// * Progress, results and warnings are logged (base/log.h). `observer`, unless it is empty, is
+// * `context` hears progress, results and warnings, and may stop the run. `observer`, unless it is
+// empty, is
 //   called once, before views are selected. It is not called for a point export.
 // * Call densify() before other threads start, and make only one run at a time. The reason: the
 //   call makes all threads of the process share one heap (share_one_heap() in base/memory.h), also
@@ -66,6 +68,7 @@ struct Report {
 // - a scene of which no image can get a depth map.
 // All this is checked before the first depth map is made. Precondition: each number is in the
 // range that its comment, or the comment of its type, names.
-Report densify(const Options& options, const SceneObserver& observer = {});
+Report densify(const Options& options, const SceneObserver& observer = {},
+               const Context& context = {});
 
 }  // namespace axial::densify

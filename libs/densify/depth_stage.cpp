@@ -162,13 +162,13 @@ void make_depth_maps(const Run& run, const MatchOptions& options, const StageJob
   stages.cached_maps = run.plan.cached_maps;
   stages.pictures = options.pictures;
   stages.check = [&](bool first_stage, const ReadMap& read_map) {
-    check_agreement(project, run.plan, first_stage, read_map, report);
+    check_agreement(project, run.plan, first_stage, read_map, report, run.context);
   };
   if (job) stages.most_stages = stages_until(job->until, options);
   if (job && job->parts > 0)
-    run_part(maker.stages(), stages.most_stages - 1, stages);
+    run_part(maker.stages(), stages.most_stages - 1, stages, run.context);
   else
-    run_stages(maker.stages(), stages);
+    run_stages(maker.stages(), stages, run.context);
 }
 
 }  // namespace axial::densify

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "scene/resolution.h"
 
 namespace axial::densify {
@@ -134,19 +133,21 @@ void require_final_maps(const Project& project, const MatchOptions& options,
   }
 }
 
-void check_overwriting(const Project& project, bool overwrite, const ExistingMaps& maps) {
+void check_overwriting(const Project& project, bool overwrite, const ExistingMaps& maps,
+                       const Context& context) {
   std::vector<std::size_t> foreign;
   for (const std::size_t image : project.part) {
     if (maps.states[image].origin == DmapOrigin::foreign) foreign.push_back(image);
     if (maps.states[image].origin == DmapOrigin::damaged)
-      log_warning("{}: the depth map or its side file is damaged; the depth map is computed again",
-                  depth_map_path(project, image).string());
+      context.warning(
+          "{}: the depth map or its side file is damaged; the depth map is computed again",
+          depth_map_path(project, image).string());
   }
   if (foreign.empty()) return;
   const std::string file = depth_map_path(project, foreign.front()).string();
   if (overwrite) {
-    log_info("{} and {} other depth maps of other programs are overwritten", file,
-             foreign.size() - 1);
+    context.info("{} and {} other depth maps of other programs are overwritten", file,
+                 foreign.size() - 1);
     return;
   }
   const bool fusable = std::ranges::all_of(foreign, [&](std::size_t image) {
@@ -159,14 +160,14 @@ void check_overwriting(const Project& project, bool overwrite, const ExistingMap
        project.name_of("overwrite_dmaps true"));
 }
 
-void keep_images_with_maps(Project& project, const ExistingMaps& maps) {
+void keep_images_with_maps(Project& project, const ExistingMaps& maps, const Context& context) {
   std::vector<std::size_t> kept;
   std::filesystem::path missing;  // the first missing map
   std::size_t foreign = 0;
   for (const std::size_t image : project.references) {
     const DmapOrigin origin = maps.states[image].origin;
     if (origin == DmapOrigin::none) {
-      log_info("{}: has no depth map, left out", project.scene.images[image].path);
+      context.info("{}: has no depth map, left out", project.scene.images[image].path);
       if (missing.empty()) missing = depth_map_path(project, image);
       continue;
     }
@@ -180,9 +181,9 @@ void keep_images_with_maps(Project& project, const ExistingMaps& maps) {
   const std::string line = fmt::format("{} of {} images have a depth map, {} by other programs",
                                        kept.size(), project.references.size(), foreign);
   if (kept.size() < project.references.size())
-    log_warning("{}; {}, for example, does not exist", line, missing.string());
+    context.warning("{}; {}, for example, does not exist", line, missing.string());
   else
-    log_info("{}", line);
+    context.info("{}", line);
   project.references = project.part = std::move(kept);
 }
 

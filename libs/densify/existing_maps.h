@@ -45,10 +45,11 @@ void require_final_maps(const Project& project, const MatchOptions& options,
 // For runs that make maps: checks whether existing maps may be overwritten. Warns of each damaged
 // map. Throws an Error if a map is foreign, unless `overwrite` is true
 // (MatchOptions::overwrite_dmaps). The error names one foreign map and the possible remedies.
-void check_overwriting(const Project& project, bool overwrite, const ExistingMaps& maps);
+void check_overwriting(const Project& project, bool overwrite, const ExistingMaps& maps,
+                       const Context& context = {});
 
 // For runs that make no maps: removes images without a map from Project::references. Sets the
-// cameras of the kept images in Project::views to the resolution of their maps. Logs how many
+// cameras of the kept images in Project::views to the resolution of their maps. Says how many
 // images have a map, as a warning if some have none. Throws an Error
 // - if no reference has a map,
 // - for a damaged map,
@@ -57,6 +58,6 @@ void check_overwriting(const Project& project, bool overwrite, const ExistingMap
 // - for a map with another pose or camera than the image. The test takes the points that the
 //   corners and the centre of the map see in the middle of its depth range. The image's camera must
 //   project each of them less than 1 px away from its pixel, at the map's resolution.
-void keep_images_with_maps(Project& project, const ExistingMaps& maps);
+void keep_images_with_maps(Project& project, const ExistingMaps& maps, const Context& context = {});
 
 }  // namespace axial::densify

@@ -9,10 +9,8 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "base/progress.h"
 #include "cloud/colors.h"
 #include "cloud/crop.h"
 #include "cloud/normals.h"
@@ -85,17 +83,18 @@ CloudCounts fuse_maps(const FusionRun& run, const std::vector<cloud::FusionView>
         counts.of_two += points_of_two(portion);
         sink(std::move(portion));
       },
-      console_progress(title));
+      run.context.stage(title));
   return counts;
 }
 
 // Logs the numbers of points outside the region and of points of two maps, and adds an entry
 // "fusion" to the file `report` unless the path is empty.
-void report_counts(const fs::path& file, const CloudCounts& counts) {
-  if (counts.removed > 0) log_info("Region of interest: {} points outside removed", counts.removed);
+void report_counts(const fs::path& file, const CloudCounts& counts, const Context& context) {
+  if (counts.removed > 0)
+    context.info("Region of interest: {} points outside removed", counts.removed);
   if (counts.of_two > 0)
-    log_info("{} points ({:.1f} %) are supported by only two depth maps", counts.of_two,
-             100.0 * static_cast<double>(counts.of_two) / static_cast<double>(counts.points));
+    context.info("{} points ({:.1f} %) are supported by only two depth maps", counts.of_two,
+                 100.0 * static_cast<double>(counts.of_two) / static_cast<double>(counts.points));
   if (file.empty()) return;
   nlohmann::json report = io::read_json(file);
   report["fusion"] = {{"points", counts.points}, {"of_two_maps", counts.of_two}};
@@ -152,7 +151,7 @@ class TileRun {
     const fs::path ply = run_.tile(tile);
     const std::string stamp = made_from(tile);
     if (const auto counts = finished_tile(ply, stamp)) {
-      log_info("{}: exists already, {} points", ply.string(), counts->points);
+      run_.context.info("{}: exists already, {} points", ply.string(), counts->points);
       return *counts;
     }
     remove_tile(ply);
@@ -175,7 +174,7 @@ class TileRun {
       part.seen_by.assign(views_.size(), false);
     }
     std::vector<std::vector<bool>> seen(views_.size());  // for each view, one for each tile
-    ProgressCounter counter(console_progress("Assigned depth maps to tiles"), views_.size());
+    ProgressCounter counter(run_.context.stage("Assigned depth maps to tiles"), views_.size());
     for_each_in_flight(views_.size(), run_.plan.fusion_loads, [&](std::size_t view) {
       const DepthMap map = load_final_map(run_, views_[view].image);
       Fingerprint print;
@@ -229,8 +228,8 @@ class TileRun {
     const CloudCounts counts = fuse_maps(run_, views_, part, maps, title,
                                          [&](const PointCloud& portion) { writer.add(portion); });
     writer.finish();
-    log_info("Tile {} of {}: {} points, seen by {} of {} views", tile, parts_.size(), counts.points,
-             seen, views_.size());
+    run_.context.info("Tile {} of {}: {} points, seen by {} of {} views", tile, parts_.size(),
+                      counts.points, seen, views_.size());
     return counts;
   }
 
@@ -292,7 +291,7 @@ std::size_t write_cloud(const Run& run, const FusionOptions& options, const Outp
   const CloudCounts counts = whole   ? write_from_memory(fusion)
                              : tiled ? write_tiles(fusion)
                                      : write_in_a_stream(fusion);
-  report_counts(output.report, counts);
+  report_counts(output.report, counts, run.context);
   return counts.points;
 }
 

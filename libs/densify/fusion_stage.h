@@ -20,7 +20,7 @@ namespace axial::densify {
 // files of the tiles stay. So the cloud has the same bytes whether this run or others made the
 // tiles. Otherwise the maps are fused in one piece. The cloud is written as it grows, unless its
 // colours or normals are estimated from the whole cloud (estimate_colors or estimate_normals is 1).
-// A log line tells how many points are supported by only two depth maps. Unless
+// A line tells how many points are supported by only two depth maps. Unless
 // OutputOptions::report is empty, an entry "fusion" in this file tells the same. The file must
 // exist: check_agreement() writes it. Calls map_large_blocks() (base/memory.h). Throws an Error if
 // a map or an image cannot be read, if a file cannot be written, or if the views of a tile need

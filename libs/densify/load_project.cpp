@@ -5,8 +5,6 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/log.h"
-#include "base/progress.h"
 #include "densify/memory_plan.h"
 #include "densify/neighbour_lists.h"
 #include "io/openmvs/point_source.h"
@@ -14,8 +12,8 @@
 namespace axial::densify {
 namespace {
 
-void find_views(Project& project) {
-  find_photographs(project);
+void find_views(Project& project, const Context& context) {
+  find_photographs(project, context);
   std::vector<View> views(project.scene.images.size());
   for (View& view : project.views) views[view.image] = std::move(view);
   project.views = std::move(views);
@@ -30,8 +28,9 @@ void check_ids(const Project& project) {
 }
 
 // Images with given neighbours need points of their own only for their depth range.
-void use_neighbour_lists(Project& project, const ViewOptions& options) {
-  const std::vector<bool> named = read_neighbour_lists(options.neighbour_lists, project.scene);
+void use_neighbour_lists(Project& project, const ViewOptions& options, const Context& context) {
+  const std::vector<bool> named =
+      read_neighbour_lists(options.neighbour_lists, project.scene, context);
   for (std::size_t i = 0; i < named.size(); ++i) {
     ViewPreparation& preparation = project.preparations[i];
     if (named[i] && preparation.init_points.size() >= options.selection.min_init_points)
@@ -44,7 +43,8 @@ void tell(const SceneObserver& observer, const Project& project, bool own_region
     observer({project.housing.has_value(), own_region, project.scene.region.has_value()});
 }
 
-void select_views(Project& project, const ViewOptions& options, const SceneObserver& observer) {
+void select_views(Project& project, const ViewOptions& options, const SceneObserver& observer,
+                  const Context& context) {
   Scene& scene = project.scene;
   const bool own_region = scene.region.has_value();
   if (!scene.region) scene.region = estimate_region(scene, options.region);
@@ -52,22 +52,22 @@ void select_views(Project& project, const ViewOptions& options, const SceneObser
   tell(observer, project, own_region);
   require_memory_to_score(scene, project.options, options.selection);
   project.preparations =
-      score_neighbours(scene, options.selection, console_progress("Scored neighbours"));
-  if (!options.neighbour_lists.empty()) use_neighbour_lists(project, options);
+      score_neighbours(scene, options.selection, context.stage("Scored neighbours"));
+  if (!options.neighbour_lists.empty()) use_neighbour_lists(project, options, context);
   project.neighbours.resize(scene.images.size());
   project.sources.resize(scene.images.size());
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
     if (!scene.images[i].calibrated) continue;
     if (!project.preparations[i].usable()) {
-      log_warning("{}: left out: {}", scene.images[i].path, project.preparations[i].problem);
+      context.warning("{}: left out: {}", scene.images[i].path, project.preparations[i].problem);
       continue;
     }
     project.neighbours[i] = filter_neighbours(scene.images[i].neighbours, options.selection);
     project.sources[i] =
         choose_source_views(project.neighbours[i], options.number_views, options.selection);
     if (project.sources[i].empty())
-      log_warning("{}: left out: {}", scene.images[i].path,
-                  why_no_source_view(scene.images[i].neighbours, options.selection));
+      context.warning("{}: left out: {}", scene.images[i].path,
+                      why_no_source_view(scene.images[i].neighbours, options.selection));
     else
       project.references.push_back(i);
   }
@@ -89,11 +89,12 @@ Project load_scene(survey::Options survey, const std::filesystem::path& point_cl
 }
 
 Project load_project(const survey::Options& survey, const ViewOptions& options,
-                     const std::filesystem::path& output, const SceneObserver& observer) {
+                     const std::filesystem::path& output, const SceneObserver& observer,
+                     const Context& context) {
   Project project = load_scene(survey, options.point_cloud, output, false);
-  find_views(project);
+  find_views(project, context);
   check_ids(project);
-  select_views(project, options, observer);
+  select_views(project, options, observer, context);
   return project;
 }
 

@@ -20,6 +20,7 @@ Project load_scene(survey::Options survey, const std::filesystem::path& point_cl
 // id that two images have, and if no image can get a depth map. survey::ImageStore::check_all()
 // finds other faults of images.
 Project load_project(const survey::Options& survey, const ViewOptions& options,
-                     const std::filesystem::path& output, const SceneObserver& observer);
+                     const std::filesystem::path& output, const SceneObserver& observer,
+                     const Context& context);
 
 }  // namespace axial::densify

@@ -7,10 +7,8 @@
 
 #include "base/error.h"
 #include "base/first_error.h"
-#include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "base/progress.h"
 #include "picture/dmap_pictures.h"
 
 namespace axial::densify {
@@ -30,15 +28,16 @@ ReadMap for_cache(ReadMap read, bool whole) {
 
 class Runner {
  public:
-  Runner(std::span<const Stage> stages, const StageRun& run) : stages_(stages), run_(run) {}
+  Runner(std::span<const Stage> stages, const StageRun& run, const Context& context)
+      : stages_(stages), run_(run), context_(context) {}
 
   void run() const {
     const std::size_t first = first_incomplete_stage();
     const std::size_t end = std::min(run_.most_stages, stages_.size());
-    if (first == end) log_info("All {} depth maps exist already", run_.images.size());
+    if (first == end) context_.info("All {} depth maps exist already", run_.images.size());
     if (first > end)
-      log_info("All {} depth maps exist already, of the later stage {}", run_.images.size(),
-               stages_[first - 1].name);
+      context_.info("All {} depth maps exist already, of the later stage {}", run_.images.size(),
+                    stages_[first - 1].name);
     for (std::size_t s = 0; s + 1 < first; ++s) remove_stage(s);
     if (first > 0) check(first - 1);
     for (std::size_t s = first; s < end; ++s) {
@@ -90,8 +89,8 @@ class Runner {
         return io::dmap_made_from(path(later, image)) == made_from(later);
       };
       if (run_.all_images.empty() || !std::ranges::all_of(run_.all_images, there)) continue;
-      log_info("All {} depth maps exist already, of the later stage {}", run_.all_images.size(),
-               stages_[later].name);
+      context_.info("All {} depth maps exist already, of the later stage {}",
+                    run_.all_images.size(), stages_[later].name);
       return true;
     }
     return false;
@@ -157,8 +156,8 @@ class Runner {
   void make_maps(std::size_t stage, PreviousMaps& previous) const {
     const std::vector<std::size_t> missing = missing_of(stage);
     if (const std::size_t reused = run_.images.size() - missing.size(); reused > 0)
-      log_info("{}: {} maps existed already", stages_[stage].title, reused);
-    ProgressCounter counter(console_progress(stages_[stage].title), missing.size());
+      context_.info("{}: {} maps existed already", stages_[stage].title, reused);
+    ProgressCounter counter(context_.stage(stages_[stage].title), missing.size());
     for_each_in_flight(missing.size(), run_.in_flight, [&](std::size_t i) {
       const std::size_t image = missing[i];
       io::write_dmap(path(stage, image), stages_[stage].make(image, previous), made_from(stage));
@@ -188,6 +187,7 @@ class Runner {
 
   std::span<const Stage> stages_;
   const StageRun& run_;
+  const Context& context_;
 };
 
 }  // namespace
@@ -195,12 +195,13 @@ class Runner {
 PreviousMaps::PreviousMaps(ReadMap read, bool whole, std::size_t capacity)
     : read_(std::move(read)), cache_(for_cache(read_, whole), capacity) {}
 
-void run_stages(std::span<const Stage> stages, const StageRun& run) {
-  Runner(stages, run).run();
+void run_stages(std::span<const Stage> stages, const StageRun& run, const Context& context) {
+  Runner(stages, run, context).run();
 }
 
-void run_part(std::span<const Stage> stages, std::size_t stage, const StageRun& run) {
-  Runner(stages, run).run_part(stage);
+void run_part(std::span<const Stage> stages, std::size_t stage, const StageRun& run,
+              const Context& context) {
+  Runner(stages, run, context).run_part(stage);
 }
 
 }  // namespace axial::densify

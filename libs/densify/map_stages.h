@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "base/context.h"
 #include "base/shared_cache.h"
 #include "densify/options.h"
 #include "io/openmvs/dmap.h"
@@ -101,7 +102,7 @@ struct StageRun {
 //
 // Exceptions of Stage::make and StageRun::check end the run and reach the caller. The finished
 // files stay.
-void run_stages(std::span<const Stage> stages, const StageRun& run);
+void run_stages(std::span<const Stage> stages, const StageRun& run, const Context& context = {});
 
 // Makes the maps of the stage stages[stage] for the images `run.images`, which are a part of all
 // images. Other runs make the maps of the other images and of the other stages. No file is removed
@@ -110,6 +111,7 @@ void run_stages(std::span<const Stage> stages, const StageRun& run);
 // for all of `run.all_images`, because a whole run has removed the maps of earlier stages then.
 // Throws an Error, before it makes a map, if a map that the stage needs is missing or has another
 // fingerprint. The error names the file.
-void run_part(std::span<const Stage> stages, std::size_t stage, const StageRun& run);
+void run_part(std::span<const Stage> stages, std::size_t stage, const StageRun& run,
+              const Context& context = {});
 
 }  // namespace axial::densify

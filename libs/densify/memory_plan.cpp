@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "cloud/fuse.h"
@@ -226,7 +225,7 @@ MemoryPlan share_out(const StageBytes& bytes, const ListLengths& lists, std::uin
   return plan;
 }
 
-MemoryPlan plan_memory(const Project& project, const Options& options) {
+MemoryPlan plan_memory(const Project& project, const Options& options, const Context& context) {
   const survey::Options& survey = options.survey;
   const ListLengths lists = longest_lists(project, options.matching, options.fusion);
   const StageBytes bytes = bytes_of_stages(project, options, lists);
@@ -237,7 +236,7 @@ MemoryPlan plan_memory(const Project& project, const Options& options) {
     fail("{} {}: {} MB are too little, this scene needs {} MB", survey.files.name_of("max_memory"),
          survey.memory.megabytes, limit / kMegabyte, least / kMegabyte + 1);
   const MemoryPlan plan = share_out(bytes, lists, limit - fixed, thread_count());
-  log_details(
+  context.details(
       "Memory {} MB, at least {}: {} images at a time, {} kept, {} depths, {} maps, {} in fusion",
       limit / kMegabyte, least / kMegabyte + 1, plan.in_flight, plan.cached_images,
       plan.cached_depths, plan.cached_maps, plan.fused_maps);

@@ -103,7 +103,7 @@ struct MemoryPlan {
 // help, because images are processed in order.
 // Throws an Error if the allowed memory is too little to process one image at a time, or to write
 // the scene while no images are cached.
-MemoryPlan plan_memory(const Project& project, const Options& options);
+MemoryPlan plan_memory(const Project& project, const Options& options, const Context& context = {});
 
 // The least memory [bytes] of a run that processes `in_flight` images at a time, without the loaded
 // scene (StageBytes::scene) and without MemoryAllowance::program_bytes. Its caches hold only the

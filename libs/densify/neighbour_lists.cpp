@@ -12,7 +12,6 @@
 #include "base/atomic_file.h"
 #include "base/byte_order_mark.h"
 #include "base/error.h"
-#include "base/log.h"
 #include "base/parse_number.h"
 
 namespace axial::densify {
@@ -43,7 +42,8 @@ ViewScore given_neighbour(std::uint32_t image) {
 
 }  // namespace
 
-std::vector<bool> read_neighbour_lists(const std::filesystem::path& file, Scene& scene) {
+std::vector<bool> read_neighbour_lists(const std::filesystem::path& file, Scene& scene,
+                                       const Context& context) {
   const std::string bytes = read_file(file);
   std::istringstream text{std::string(without_byte_order_mark(bytes))};
   std::vector<bool> named(scene.images.size(), false);
@@ -59,7 +59,7 @@ std::vector<bool> read_neighbour_lists(const std::filesystem::path& file, Scene&
     named[images[0]] = true;
     for (const std::uint32_t image : images)
       if (!scene.images[image].calibrated)
-        log_warning("{}: image {} has no pose and is ignored", where, image);
+        context.warning("{}: image {} has no pose and is ignored", where, image);
     std::vector<ViewScore>& neighbours = scene.images[images[0]].neighbours;
     neighbours.clear();
     for (std::size_t i = 1; i < images.size(); ++i) {

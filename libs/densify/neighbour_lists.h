@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "base/context.h"
 #include "scene/scene.h"
 
 namespace axial::densify {
@@ -19,7 +20,8 @@ namespace axial::densify {
 // - for a word that is no index of an image of the scene,
 // - for an image that has two lines or is its own neighbour,
 // - for a line without neighbours.
-std::vector<bool> read_neighbour_lists(const std::filesystem::path& file, Scene& scene);
+std::vector<bool> read_neighbour_lists(const std::filesystem::path& file, Scene& scene,
+                                       const Context& context = {});
 
 // Writes the lists of all calibrated images that have neighbours, in the order of the scene. Throws
 // an Error if the file cannot be written.

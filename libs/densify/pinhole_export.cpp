@@ -7,10 +7,8 @@
 #include "base/atomic_file.h"
 #include "base/file_extension.h"
 #include "base/first_error.h"
-#include "base/log.h"
 #include "base/order_statistics.h"
 #include "base/parallel.h"
-#include "base/progress.h"
 #include "cloud/pinhole_resampling.h"
 #include "densify/cloud_exports.h"
 #include "densify/pinhole_folder.h"
@@ -39,11 +37,12 @@ struct Exported {
 class Export {
  public:
   Export(Project& project, const OutputOptions& output, const ExistingMaps& maps,
-         std::size_t at_once)
+         std::size_t at_once, const Context& context)
       : project_(project),
         output_(output),
         maps_(maps),
         at_once_(at_once),
+        context_(context),
         photographs_(io::common_image_folder(project.scene)),
         exported_(project.scene.images.size()),
         is_exported_(project.scene.images.size(), false) {
@@ -58,7 +57,7 @@ class Export {
       export_cloud();
       export_scene();
       export_marker();
-      remove_earlier_export(output_.pinhole_export, folder_);
+      remove_earlier_export(output_.pinhole_export, folder_, context_);
     });
     report();
   }
@@ -139,7 +138,7 @@ class Export {
     for (const std::size_t image : project_.references)
       make_folder(image_file(image).parent_path());
     const std::size_t count = project_.references.size();
-    ProgressCounter counter(console_progress("Exported pinhole images"), count);
+    ProgressCounter counter(context_.stage("Exported pinhole images"), count);
     FirstError error;
     for_each_in_flight(count, at_once_, [&](std::size_t i) {
       error.run(i, [&] { export_image(project_.references[i]); });
@@ -221,11 +220,11 @@ class Export {
     }
     const std::size_t count = project_.references.size();
     if (cut > 0)
-      log_warning(
+      context_.warning(
           "{}: {} of {} images have a wider field of view than a pinhole can show: "
           "their edges are cut off",
           project_.name_of("pinhole_export"), cut, count);
-    log_info(
+    context_.info(
         "{}: {} pinhole images, {:.1f} % of their pixels on a known surface: OpenMVS's programs "
         "can use scene.mvs, scene.ply and the depth maps in this folder",
         output_.pinhole_export.string(), count, 100 * exact / static_cast<double>(count));
@@ -235,6 +234,7 @@ class Export {
   const OutputOptions& output_;
   const ExistingMaps& maps_;
   std::size_t at_once_;
+  const Context& context_;
   fs::path photographs_, folder_;
   double near_ = 0, far_ = 0;       // lambda [m]
   std::vector<Exported> exported_;  // one for each image of the scene
@@ -257,8 +257,8 @@ std::uint64_t bytes_needed_to_resample(const View& view) {
 }
 
 void export_pinholes(Project& project, const OutputOptions& output, const ExistingMaps& maps,
-                     std::size_t at_once) {
-  Export(project, output, maps, at_once).run();
+                     std::size_t at_once, const Context& context) {
+  Export(project, output, maps, at_once, context).run();
 }
 
 }  // namespace axial::densify

@@ -30,6 +30,6 @@ std::uint64_t bytes_needed_to_resample(const View& view);
 // the cloud is complete. Throws an Error if an input cannot be
 // read or a file cannot be written.
 void export_pinholes(Project& project, const OutputOptions& output, const ExistingMaps& maps,
-                     std::size_t at_once);
+                     std::size_t at_once, const Context& context);
 
 }  // namespace axial::densify

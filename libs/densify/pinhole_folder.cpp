@@ -10,7 +10,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_extension.h"
-#include "base/log.h"
 #include "io/bytes/json.h"
 #include "io/bytes/written_files.h"
 #include "io/colmap/colmap_export.h"
@@ -67,14 +66,15 @@ void check_folder(const Project& project, const fs::path& folder) {
 
 }  // namespace
 
-void remove_earlier_export(const fs::path& folder, const fs::path& staging) {
+void remove_earlier_export(const fs::path& folder, const fs::path& staging,
+                           const Context& context) {
   std::error_code error;
   const fs::path marker = folder / kPinholeMarker;
   if (!fs::exists(marker, error)) return;
   const nlohmann::json earlier = io::read_json(marker);
   if (!earlier.contains("files"))
-    log_warning("{}: lists no files: files that this export does not replace are kept",
-                marker.string());
+    context.warning("{}: lists no files: files that this export does not replace are kept",
+                    marker.string());
   io::WrittenFiles files =
       io::find_written(folder, earlier.value("files", nlohmann::json::object()));
   const auto replaced = [&](const fs::path& file) { return fs::exists(staging / file, error); };
@@ -82,8 +82,8 @@ void remove_earlier_export(const fs::path& folder, const fs::path& staging) {
   std::erase_if(files.changed, replaced);
   io::remove_below(folder, files.unchanged);
   if (!files.changed.empty())
-    log_warning("{}: was changed after the earlier export and is kept, as are {} other files",
-                (folder / files.changed.front()).string(), files.changed.size() - 1);
+    context.warning("{}: was changed after the earlier export and is kept, as are {} other files",
+                    (folder / files.changed.front()).string(), files.changed.size() - 1);
 }
 
 void check_pinhole_export(const Project& project, const fs::path& folder) {

@@ -24,7 +24,7 @@ std::filesystem::path exported_name(const SceneImage& image,
 // changed after the earlier export. Warns of changed files that stay. Warns, and removes nothing,
 // if the earlier export has no list of its files. Does nothing if `folder` contains no export.
 void remove_earlier_export(const std::filesystem::path& folder,
-                           const std::filesystem::path& staging);
+                           const std::filesystem::path& staging, const Context& context);
 
 // Checks, before the work, whether the export can be written to `folder`. Throws an Error
 // - if no camera has a port or a distorted lens,

@@ -126,13 +126,13 @@ std::filesystem::path depth_map_path(const Project& project, std::size_t image) 
 }
 
 std::string fingerprint(const Project& project, const MatchOptions& options,
-                        const survey::KeptContents& kept) {
+                        const survey::KeptContents& kept, const Context& context) {
   Fingerprint print;
   // The number is the version of the matching method and of the defaults of its settings.
   print.add("AxialMVS depth maps 12");
   add_options(print, options, project.options.ignore_mask_label);
   if (const std::string changed = changed_numbers(options); !changed.empty()) print.add(changed);
-  const std::vector<std::string> contents = survey::contents_of_views(project, kept);
+  const std::vector<std::string> contents = survey::contents_of_views(project, kept, context);
   for (std::size_t i = 0; i < project.views.size(); ++i) {
     survey::add_view(print, project, i, contents[i]);
     for (const auto* list : {&project.neighbours[i], &project.sources[i]}) {

@@ -56,6 +56,6 @@ std::filesystem::path depth_map_path(const Project& project, std::size_t image);
 // of all calibrated images whose fingerprints are not in `kept`. `project`: its views must be
 // selected. Throws an Error for a file that cannot be read.
 std::string fingerprint(const Project& project, const MatchOptions& options,
-                        const survey::KeptContents& kept = {});
+                        const survey::KeptContents& kept = {}, const Context& context = {});
 
 }  // namespace axial::densify

@@ -14,6 +14,7 @@ struct Run {
   const ExistingMaps& existing;  // the result of find_existing_maps()
   const MemoryPlan& plan;
   survey::ImageStore& images;
+  const Context& context;
 };
 
 }  // namespace axial::densify

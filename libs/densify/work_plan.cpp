@@ -5,7 +5,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/log.h"
 #include "base/parallel.h"
 #include "densify/memory_plan.h"
 #include "io/bytes/json.h"
@@ -68,7 +67,8 @@ std::uint64_t memory_of(const Project& project, const Options& options) {
 
 }  // namespace
 
-void write_work_plan(const Project& project, const Options& options, const PlanJob& job) {
+void write_work_plan(const Project& project, const Options& options, const PlanJob& job,
+                     const Context& context) {
   const std::uint64_t memory = memory_of(project, options);
   const std::vector<double> seconds = seconds_of_stages(project, options.matching);
   const std::vector<std::string> names = stage_names(options.matching);
@@ -86,7 +86,7 @@ void write_work_plan(const Project& project, const Options& options, const PlanJ
                             {"stages", names},
                             {"per_part", per_part},
                             {"fusion", work(fusion, memory)}});
-  log_info("{}: {} images in {} parts", job.file.string(), images, parts);
+  context.info("{}: {} images in {} parts", job.file.string(), images, parts);
 }
 
 }  // namespace axial::densify

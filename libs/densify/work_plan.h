@@ -19,6 +19,7 @@ namespace axial::densify {
 //   least max_memory that keeps all threads busy), and "memory_mb" (the memory that the job can use
 //   with this setting: a scheduler should allow it).
 // Throws an Error if the file cannot be written.
-void write_work_plan(const Project& project, const Options& options, const PlanJob& job);
+void write_work_plan(const Project& project, const Options& options, const PlanJob& job,
+                     const Context& context);
 
 }  // namespace axial::densify

@@ -8,7 +8,6 @@
 
 #include "base/atomic_file.h"
 #include "base/parallel.h"
-#include "base/progress.h"
 #include "io/bytes/json.h"
 
 namespace axial::survey {
@@ -90,10 +89,11 @@ std::string kept_or_read(const nlohmann::json& kept, const std::string& state,
 
 }  // namespace
 
-std::vector<std::string> contents_of_views(const Survey& survey, const KeptContents& kept) {
+std::vector<std::string> contents_of_views(const Survey& survey, const KeptContents& kept,
+                                           const Context& context) {
   const nlohmann::json old = kept.read ? kept_contents(kept.file) : nlohmann::json::object();
   std::vector<std::string> prints(survey.views.size()), states(survey.views.size());
-  ProgressCounter counter(console_progress("Fingerprints of images"), prints.size());
+  ProgressCounter counter(context.stage("Fingerprints of images"), prints.size());
   parallel_for(prints.size(), [&](std::size_t v) {
     if (!survey.views[v].file.empty()) {
       const std::vector<fs::path> files = files_of(survey.views[v]);
@@ -122,12 +122,12 @@ void add_view(Fingerprint& print, const Survey& survey, std::size_t index,
   if (view.header.alpha) print.add("transparent pixels are masked");
 }
 
-std::string fingerprint_of_views(const Survey& survey) {
+std::string fingerprint_of_views(const Survey& survey, const Context& context) {
   const Options& options = survey.options;
   Fingerprint print;
   print.add("AxialMVS views 1").add(static_cast<std::uint64_t>(options.ignore_mask_label));
   if (options.ignore_black_border) print.add("black borders are masked");
-  const std::vector<std::string> contents = contents_of_views(survey);
+  const std::vector<std::string> contents = contents_of_views(survey, {}, context);
   for (std::size_t v = 0; v < contents.size(); ++v) add_view(print, survey, v, contents[v]);
   return print.hex();
 }

@@ -24,7 +24,8 @@ struct KeptContents {
 // Returns, for each view, a fingerprint of the bytes of its photograph and of its mask; empty for a
 // view without a file. Reads the photographs and masks whose fingerprints are not kept. Error for a
 // photograph or mask that cannot be read, and if the file of `kept` cannot be written.
-std::vector<std::string> contents_of_views(const Survey& survey, const KeptContents& kept = {});
+std::vector<std::string> contents_of_views(const Survey& survey, const KeptContents& kept = {},
+                                           const Context& context = {});
 
 // Adds ID, camera, pose and pixels of a view at the working resolution. `content`: the element of
 // contents_of_views() for the view.
@@ -33,6 +34,6 @@ void add_view(Fingerprint& print, const Survey& survey, std::size_t view,
 
 // A fingerprint of the cameras, poses and pixels of all views at the working resolution, with their
 // masks. Reads the photographs and masks. Error for a file that cannot be read.
-std::string fingerprint_of_views(const Survey& survey);
+std::string fingerprint_of_views(const Survey& survey, const Context& context = {});
 
 }  // namespace axial::survey

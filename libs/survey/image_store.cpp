@@ -5,7 +5,6 @@
 
 #include "base/first_error.h"
 #include "base/parallel.h"
-#include "base/progress.h"
 
 namespace axial::survey {
 
@@ -29,18 +28,19 @@ cv::Mat1b ImageStore::mask(std::size_t view) {
   return masked ? get(view)->mask : cv::Mat1b();
 }
 
-void ImageStore::check_all(std::size_t at_once) {
+void ImageStore::check_all(std::size_t at_once, const Context& context) {
   std::vector<std::size_t> views;
   const std::vector<View>& all = photographs_.survey().views;
   for (std::size_t v = 0; v < all.size(); ++v)
     if (!all[v].file.empty()) views.push_back(v);
-  check(views, at_once);
-  photographs_.check_labels();
+  check(views, at_once, context);
+  photographs_.check_labels(context);
 }
 
-void ImageStore::check(std::span<const std::size_t> views, std::size_t at_once) {
+void ImageStore::check(std::span<const std::size_t> views, std::size_t at_once,
+                       const Context& context) {
   const std::size_t count = views.size();
-  ProgressCounter counter(console_progress("Read images"), count);
+  ProgressCounter counter(context.stage("Read images"), count);
   FirstError error;
   for_each_in_flight(count, at_once, [&](std::size_t i) {
     const std::size_t view = views[count - 1 - i];

@@ -47,10 +47,10 @@ class ImageStore {
   // one in the order of the views. Warns if there are masks and none has the label to ignore. The
   // photographs are read in reverse order, so that the photographs that are needed first stay in
   // the cache.
-  void check_all(std::size_t at_once);
+  void check_all(std::size_t at_once, const Context& context);
 
   // As check_all(), but reads only `views`, and does not warn about masks.
-  void check(std::span<const std::size_t> views, std::size_t at_once);
+  void check(std::span<const std::size_t> views, std::size_t at_once, const Context& context);
 
   const Photographs& photographs() const { return photographs_; }
 

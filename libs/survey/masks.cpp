@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "io/images/masks.h"
 
 namespace axial::survey {
@@ -17,37 +16,38 @@ std::size_t masks_of_scene(const Scene& scene) {
   }));
 }
 
-void tell_of_unused(const Survey& survey) {
+void tell_of_unused(const Survey& survey, const Context& context) {
   const Options& options = survey.options;
   const SettingNames name_of = options.files.name_of;
   if (!options.mask_folder.empty())
-    log_warning("{} {}: is not used, because {} is {}", name_of("mask_folder"),
-                options.mask_folder.string(), name_of("ignore_mask_label"),
-                options.ignore_mask_label);
+    context.warning("{} {}: is not used, because {} is {}", name_of("mask_folder"),
+                    options.mask_folder.string(), name_of("ignore_mask_label"),
+                    options.ignore_mask_label);
   else if (const std::size_t named = masks_of_scene(survey.scene))
-    log_info("{}: contains masks of {} images, which are used only with {}", survey.file().string(),
-             named, name_of("ignore_mask_label"));
+    context.info("{}: contains masks of {} images, which are used only with {}",
+                 survey.file().string(), named, name_of("ignore_mask_label"));
 }
 
-void warn_of_ignored_masks(const Survey& survey, const std::vector<io::FoundMask>& masks) {
+void warn_of_ignored_masks(const Survey& survey, const std::vector<io::FoundMask>& masks,
+                           const Context& context) {
   const std::filesystem::path& folder = survey.options.mask_folder;
   const std::size_t named = folder.empty() ? 0 : masks_of_scene(survey.scene);
   if (named > 0)
-    log_warning("{} {}: is used instead of the masks that {} names for {} images",
-                survey.options.files.name_of("mask_folder"), folder.string(),
-                survey.file().string(), named);
+    context.warning("{} {}: is used instead of the masks that {} names for {} images",
+                    survey.options.files.name_of("mask_folder"), folder.string(),
+                    survey.file().string(), named);
   const io::IgnoredMasks ignored = io::ignored_masks(masks);
   if (ignored.count > 0)
-    log_warning("{}: is used; {} differs and is ignored ({} images have two different masks)",
-                ignored.used.string(), ignored.other.string(), ignored.count);
+    context.warning("{}: is used; {} differs and is ignored ({} images have two different masks)",
+                    ignored.used.string(), ignored.other.string(), ignored.count);
 }
 
 }  // namespace
 
-void choose_masks(Survey& survey) {
+void choose_masks(Survey& survey, const Context& context) {
   const Options& options = survey.options;
   if (!options.has_masks) return;
-  if (options.ignore_mask_label < 0) return tell_of_unused(survey);
+  if (options.ignore_mask_label < 0) return tell_of_unused(survey, context);
   std::vector<io::MaskRequest> requests;
   for (const View& view : survey.views)
     requests.push_back({view.file, survey.scene.images[view.image].mask_path});
@@ -59,9 +59,9 @@ void choose_masks(Survey& survey) {
     if (!options.mask_folder.empty())
       fail("{} {}: no mask for image {}: looked for {}", options.files.name_of("mask_folder"),
            options.mask_folder.string(), photograph, masks[v].looked_for);
-    log_warning("{}: no mask: looked for {}", photograph, masks[v].looked_for);
+    context.warning("{}: no mask: looked for {}", photograph, masks[v].looked_for);
   }
-  warn_of_ignored_masks(survey, masks);
+  warn_of_ignored_masks(survey, masks, context);
 }
 
 void LabelCheck::add(const cv::Mat1w& labels) {
@@ -73,7 +73,7 @@ void LabelCheck::add(const cv::Mat1w& labels) {
   others_ |= present;
 }
 
-void LabelCheck::warn_if_absent(std::span<const View> views) const {
+void LabelCheck::warn_if_absent(std::span<const View> views, const Context& context) const {
   if (seen_ || others_.none()) return;
   constexpr std::size_t kMost = 10;
   std::string labels;
@@ -83,8 +83,8 @@ void LabelCheck::warn_if_absent(std::span<const View> views) const {
   if (others_.count() > kMost) labels += fmt::format(" and {} more", others_.count() - kMost);
   const auto first =
       std::ranges::find_if(views, [](const View& view) { return !view.mask.empty(); });
-  log_warning("{} {}: no mask has this label; {} and the other masks have {}", setting_, label_,
-              first->mask.string(), labels);
+  context.warning("{} {}: no mask has this label; {} and the other masks have {}", setting_, label_,
+                  first->mask.string(), labels);
 }
 
 }  // namespace axial::survey

@@ -2,7 +2,6 @@
 #include "survey/photograph_check.h"
 
 #include "base/error.h"
-#include "base/log.h"
 
 namespace axial::survey {
 namespace {
@@ -18,10 +17,10 @@ bool is_foreign(const PhotographFacts& facts) {
   return can_be_judged(facts) && (facts.is_blank || facts.agreement < kLeastAgreement);
 }
 
-void warn_of(const std::string& name, const PhotographFacts& facts) {
+void warn_of(const std::string& name, const PhotographFacts& facts, const Context& context) {
   if (facts.is_blank)
-    return log_warning("{}: the photograph is blank: all of it has one grey value", name);
-  log_warning(
+    return context.warning("{}: the photograph is blank: all of it has one grey value", name);
+  context.warning(
       "{}: the photograph does not show the ground that the scene's other photographs show: was it "
       "exchanged? (correlation {:.2f} at {} sparse points; photographs of the scene have 0.5 or "
       "more)",
@@ -35,7 +34,7 @@ PhotographCheck::PhotographCheck(const Scene& scene, std::filesystem::path scene
   for (const SceneImage& image : scene.images) names_.push_back(image.path);
 }
 
-void PhotographCheck::report() const {
+void PhotographCheck::report(const Context& context) const {
   const std::vector<PhotographFacts> all = samples_.facts();
   std::size_t taken = 0, judged = 0, blank = 0, foreign = 0;
   for (const PhotographFacts& facts : all) {
@@ -48,12 +47,12 @@ void PhotographCheck::report() const {
     fail("{}: {} of {} photographs are blank: all of each has one grey value", scene_file_.string(),
          blank, taken);
   if (2 * foreign > judged)
-    return log_warning(
+    return context.warning(
         "{}: {} of {} photographs do not show the same ground at the scene's sparse points: do the "
         "photographs, the lenses and the ports belong to this scene?",
         scene_file_.string(), foreign, judged);
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (is_foreign(all[i])) warn_of(names_[i], all[i]);
+    if (is_foreign(all[i])) warn_of(names_[i], all[i], context);
 }
 
 }  // namespace axial::survey

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "base/context.h"
 #include "scene/scene.h"
 #include "survey/photograph_agreement.h"
 
@@ -31,7 +32,7 @@ class PhotographCheck {
   // warning names the scene instead: its photographs, lenses or ports may be wrong. Error if more
   // than half of the photographs that were taken are blank. Call this after the photographs were
   // taken and before outputs are written.
-  void report() const;
+  void report(const Context& context) const;
 
  private:
   PhotographSamples samples_;

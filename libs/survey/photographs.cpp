@@ -91,9 +91,9 @@ std::uint64_t Photographs::bytes_to_read_color() const {
   return largest;
 }
 
-void Photographs::report() const {
-  check_labels();
-  if (survey_.photograph_check) survey_.photograph_check->report();
+void Photographs::report(const Context& context) const {
+  check_labels(context);
+  if (survey_.photograph_check) survey_.photograph_check->report(context);
 }
 
 }  // namespace axial::survey

@@ -43,12 +43,14 @@ class Photographs {
   std::uint64_t bytes_to_read_color() const;
 
   // Warns if masks were read and none has the label to ignore.
-  void check_labels() const { labels_.warn_if_absent(survey_.views); }
+  void check_labels(const Context& context) const {
+    labels_.warn_if_absent(survey_.views, context);
+  }
 
   // Calls check_labels(), and reports photographs that do not belong to the scene
   // (PhotographCheck::report()). Call it after the photographs were read and before outputs
   // are written.
-  void report() const;
+  void report(const Context& context) const;
 
  private:
   const Survey& survey_;

@@ -112,10 +112,10 @@ std::vector<fs::path> photograph_files(const Survey& survey) {
   return files;
 }
 
-void find_photographs(Survey& survey) {
+void find_photographs(Survey& survey, const Context& context) {
   read_headers(survey);
   check_sizes(survey);
-  choose_masks(survey);
+  choose_masks(survey, context);
   find_bit_depth(survey);
   survey.add_inputs(photograph_files(survey));
   survey.inputs.push_back(survey.options.views_file);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/context.h"
 #include "geometry/posed_camera.h"
 #include "io/images/image.h"
 #include "io/openmvs/scene_with_cameras.h"
@@ -78,7 +79,7 @@ Survey open_scene(const Options& options);
 // - a missing mask in Options::mask_folder,
 // - a line of the views file that names no image,
 // - a scene without an image to use.
-void find_photographs(Survey& survey);
+void find_photographs(Survey& survey, const Context& context);
 
 // The photographs and masks of the views.
 std::vector<std::filesystem::path> photograph_files(const Survey& survey);

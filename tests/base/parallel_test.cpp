@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -49,6 +50,28 @@ TEST(ParallelFor, CanBeNested) {
   parallel_for(
       6, [&](std::size_t i) { parallel_for(10, [&](std::size_t k) { ++visits[10 * i + k]; }); });
   for (const auto& visit : visits) EXPECT_EQ(visit, 1);
+}
+
+// The second item throws while the loop inside the first one runs.
+TEST(ForEachInFlight, AnItemThatHasBegunGoesToItsEndThoughAnotherThrows) {
+  const ThreadLimit limit(2);
+  std::atomic<bool> begun = false;
+  std::atomic<int> visits = 0;
+  const auto first = [&](std::size_t) {
+    begun = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ++visits;
+  };
+  const auto item = [&](std::size_t i) {
+    if (i == 0) return parallel_for(200, first);
+    while (!begun) std::this_thread::yield();
+    fail("item {} is bad", i);
+  };
+  EXPECT_THROW(for_each_in_flight(2, 2, item), Error);
+  EXPECT_EQ(visits, 200);
+  visits = 0;
+  EXPECT_THROW(parallel_for(2, item), Error);
+  EXPECT_EQ(visits, 200);
 }
 
 TEST(ForEachInFlight, RunsNoMoreThanItMay) {

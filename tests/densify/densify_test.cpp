@@ -7,16 +7,17 @@
 
 #include <cmath>
 #include <cstdint>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/atomic_file.h"
-#include "base/log.h"
 #include "densify/floor_fixture.h"
 #include "io/openmvs/mvs.h"
 #include "io/ply/ply.h"
+#include "support/captured_events.h"
 #include "support/error_of.h"
 
 namespace axial::densify {
@@ -157,19 +158,42 @@ TEST_F(Densify, ErrorsNameSettingsInTheWordsOfTheCaller) {
   }
 }
 
+// A run that is stopped in each of its stages, and goes on, gives the bytes of one run.
+TEST_F(Densify, AStoppedRunGoesOn) {
+  densify(options_);
+  const std::string expected = read_file(folder_ / "out" / "dense.ply");
+  use_folder("stopped");
+  const fs::path cloud = folder_ / "stopped" / "dense.ply";
+  for (const char* stage :
+       {"Estimated depth maps", "Geometric-consistency pass 1", "Fused depth maps"}) {
+    std::stop_source source;
+    std::size_t done = 0;
+    const auto stop = [&](const Event& event) {
+      if (event.text != stage || event.done == 0) return;
+      ++done;
+      source.request_stop();
+    };
+    EXPECT_THROW(densify(options_, {}, Context(stop, source.get_token())), Stopped);
+    EXPECT_GE(done, 1u) << stage;
+    EXPECT_FALSE(fs::exists(cloud)) << stage;
+  }
+  densify(options_);
+  EXPECT_TRUE(read_file(cloud) == expected);
+}
+
 TEST_F(Densify, WarningsNameSettingsInTheWordsOfTheCaller) {
   options_.survey.mask_folder = folder_;
   options_.job = NeighbourListsJob{folder_ / "lists.txt"};
-  const LogCapture log;
-  densify(options_);
-  EXPECT_THAT(log.text(), HasSubstr("mask_folder " + folder_.string() +
-                                    ": is not used, because ignore_mask_label is -1\n"));
-  EXPECT_THAT(log.text(), Not(ContainsRegex("--[a-z]")));
+  const test::CapturedEvents events;
+  densify(options_, {}, events.context);
+  EXPECT_THAT(events.lines, HasSubstr("mask_folder " + folder_.string() +
+                                      ": is not used, because ignore_mask_label is -1\n"));
+  EXPECT_THAT(events.lines, Not(ContainsRegex("--[a-z]")));
   options_.survey.files.name_of = [](std::string_view setting) {
     return fmt::format("<{}>", setting);
   };
-  densify(options_);
-  EXPECT_THAT(log.text(), HasSubstr("because <ignore_mask_label> is -1\n"));
+  densify(options_, {}, events.context);
+  EXPECT_THAT(events.lines, HasSubstr("because <ignore_mask_label> is -1\n"));
 }
 
 }  // namespace

@@ -7,11 +7,11 @@
 #include <set>
 
 #include "base/atomic_file.h"
-#include "base/log.h"
 #include "densify/floor_fixture.h"
 #include "densify/memory_plan.h"
 #include "densify/tiles.h"
 #include "io/ply/ply.h"
+#include "support/captured_events.h"
 #include "support/error_of.h"
 
 namespace axial::densify {
@@ -37,7 +37,7 @@ class FusionTiles : public FloorTest {
     Options options = options_;
     options.fusion.tiles = tiles;
     options.max_threads = threads;
-    densify(options);
+    densify(options, {}, events_.context);
     return cloud();
   }
 
@@ -58,6 +58,8 @@ class FusionTiles : public FloorTest {
       count += entry.path().filename().string().find(".tile") != std::string::npos ? 1 : 0;
     return count;
   }
+
+  test::CapturedEvents events_;
 };
 
 TEST_F(FusionTiles, GiveNearlyTheCloudOfOnePiece) {
@@ -101,10 +103,10 @@ TEST_F(FusionTiles, MadeInAnyOrderGiveTheBytesOfOneRun) {
   }
   EXPECT_EQ(tile_files(), 6u);
   EXPECT_FALSE(fs::exists(fs::path(options_.output.scene).replace_extension(".ply")));
-  const LogCapture log;
+  events_.lines.clear();
   EXPECT_EQ(cloud_in(3), expected);
-  EXPECT_THAT(log.text(), HasSubstr("tile2-3.ply: exists already"));
-  EXPECT_THAT(log.text(), Not(HasSubstr("Tile ")));  // none was fused again
+  EXPECT_THAT(events_.lines, HasSubstr("tile2-3.ply: exists already"));
+  EXPECT_THAT(events_.lines, Not(HasSubstr("Tile ")));  // none was fused again
   EXPECT_EQ(counts(), counted);
   EXPECT_EQ(tile_files(), 0u);
   EXPECT_EQ(io::read_cloud_ply(fs::path(options_.output.scene).replace_extension(".ply")).size(),
@@ -118,11 +120,11 @@ TEST_F(FusionTiles, AStoppedRunGoesOnWithTheFirstMissingTile) {
   fs::resize_file(tile_path(2, 3), 2000);  // damaged
   densify(with_tile(3, 3));
   fs::remove(tile_path(3, 3).string() + ".json");  // killed before the side file
-  const LogCapture log;
+  events_.lines.clear();
   EXPECT_EQ(cloud_in(3), expected);
-  EXPECT_THAT(log.text(), HasSubstr("tile1-3.ply: exists already"));
-  EXPECT_THAT(log.text(), HasSubstr("Tile 2 of 3: "));
-  EXPECT_THAT(log.text(), HasSubstr("Tile 3 of 3: "));
+  EXPECT_THAT(events_.lines, HasSubstr("tile1-3.ply: exists already"));
+  EXPECT_THAT(events_.lines, HasSubstr("Tile 2 of 3: "));
+  EXPECT_THAT(events_.lines, HasSubstr("Tile 3 of 3: "));
 }
 
 TEST_F(FusionTiles, OfOtherSettingsOrMapsAreMadeAgain) {
@@ -135,9 +137,9 @@ TEST_F(FusionTiles, OfOtherSettingsOrMapsAreMadeAgain) {
   densify(with_tile(1, 2));
   fs::remove(map(2));
   options_.matching.make_maps = false;  // the tile was made from four maps
-  const LogCapture log;
+  events_.lines.clear();
   cloud_in(2);
-  EXPECT_THAT(log.text(), HasSubstr("Tile 1 of 2: "));
+  EXPECT_THAT(events_.lines, HasSubstr("Tile 1 of 2: "));
 }
 
 TEST_F(FusionTiles, AreTheSameForAnyThreadsAndMemory) {

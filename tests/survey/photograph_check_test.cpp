@@ -6,8 +6,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "base/log.h"
 #include "belong/hilly_scene.h"
+#include "support/captured_events.h"
 #include "support/error_of.h"
 
 namespace axial::survey {
@@ -27,18 +27,18 @@ class PhotographCheckTest : public testing::Test {
   }
 
   std::string warnings() const {
-    const LogCapture log;
+    const test::CapturedEvents events;
     PhotographCheck check(scene_, "scene.mvs");
     for (std::size_t i = 0; i < photographs_.size(); ++i) check.take(i, photographs_[i]);
-    check.report();
-    return log.text();
+    check.report(events.context);
+    return events.lines;
   }
 
   std::string error() const {
-    const LogCapture log;
+    const test::CapturedEvents events;
     PhotographCheck check(scene_, "scene.mvs");
     for (std::size_t i = 0; i < photographs_.size(); ++i) check.take(i, photographs_[i]);
-    return test::error_of([&] { check.report(); });
+    return test::error_of([&] { check.report(events.context); });
   }
 
   Scene scene_;

@@ -7,7 +7,6 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "base/log.h"
 #include "support/error_of.h"
 #include "survey/image_store.h"
 #include "survey/small_survey.h"
@@ -19,14 +18,7 @@ using testing::HasSubstr;
 
 namespace fs = std::filesystem;
 
-class PhotographsTest : public test::SmallSurvey {
- protected:
-  Survey opened() const {
-    Survey survey = open_scene(options_);
-    find_photographs(survey);
-    return survey;
-  }
-};
+using PhotographsTest = test::SmallSurvey;
 
 TEST_F(PhotographsTest, HaveTheChannelsThatAreAskedFor) {
   options_.resolution = {1, 1, 1 << 16};
@@ -80,16 +72,16 @@ TEST_F(PhotographsTest, ALabelThatNoMaskHasIsAWarning) {
   for (const int label : {5, 7}) {
     options_.ignore_mask_label = label;
     const Survey survey = opened();
-    const LogCapture log;
+    events_.lines.clear();
     ImageStore images(survey, Channels::grey, 2);
-    images.check_all(1);
+    images.check_all(1, events_.context);
     const std::string words = "ignore_mask_label 5: no mask has this label; " +
                               (folder_ / "image0.mask.png").string() +
                               " and the other masks have 0, 7, 9\n";
     if (label == 5)
-      EXPECT_THAT(log.text(), HasSubstr(words));
+      EXPECT_THAT(events_.lines, HasSubstr(words));
     else
-      EXPECT_THAT(log.text(), Not(HasSubstr("no mask has this label")));
+      EXPECT_THAT(events_.lines, Not(HasSubstr("no mask has this label")));
   }
 }
 
@@ -97,7 +89,7 @@ TEST_F(PhotographsTest, ABadPhotographIsFoundBeforeTheWork) {
   const Survey survey = opened();
   fs::resize_file(folder_ / "image2.png", fs::file_size(folder_ / "image2.png") / 2);
   ImageStore images(survey, Channels::grey, 2);
-  EXPECT_THAT(test::error_of([&] { images.check_all(2); }), HasSubstr("image2.png"));
+  EXPECT_THAT(test::error_of([&] { images.check_all(2, {}); }), HasSubstr("image2.png"));
 }
 
 // More than half of the photographs are blank.
@@ -109,9 +101,10 @@ TEST_F(PhotographsTest, AreComparedWithEachOtherWithoutTheScene) {
     const Photographs photographs(survey);
     for (std::size_t v = 0; v < survey.views.size(); ++v) photographs.read(v, Channels::color);
     if (compared)
-      EXPECT_THAT(test::error_of([&] { photographs.report(); }), HasSubstr("are blank"));
+      EXPECT_THAT(test::error_of([&] { photographs.report(events_.context); }),
+                  HasSubstr("are blank"));
     else
-      photographs.report();
+      photographs.report(events_.context);
   }
 }
 

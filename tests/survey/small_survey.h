@@ -12,8 +12,10 @@
 #include "io/images/image.h"
 #include "io/openmvs/mvs.h"
 #include "support/analytic_scene.h"
+#include "support/captured_events.h"
 #include "support/empty_folder.h"
-#include "survey/options.h"
+#include "support/error_of.h"
+#include "survey/survey.h"
 
 namespace axial::test {
 
@@ -47,9 +49,21 @@ class SmallSurvey : public testing::Test {
     io::write_png(folder_ / name, mask);
   }
 
+  // The survey with its photographs.
+  survey::Survey opened() {
+    survey::Survey survey = survey::open_scene(options_);
+    survey::find_photographs(survey, events_.context);
+    return survey;
+  }
+
+  std::string error() {
+    return error_of([&] { opened(); });
+  }
+
   static inline const cv::Size kSize{dry_camera().width, dry_camera().height};
   const fs::path folder_ = empty_folder();
   survey::Options options_;
+  CapturedEvents events_;
 };
 
 }  // namespace axial::test

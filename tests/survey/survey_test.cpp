@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.h"
-#include "base/log.h"
 #include "support/error_of.h"
 #include "survey/fingerprint.h"
 #include "survey/small_survey.h"
@@ -18,18 +17,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class SurveyTest : public test::SmallSurvey {
- protected:
-  Survey opened() const {
-    Survey survey = open_scene(options_);
-    find_photographs(survey);
-    return survey;
-  }
-
-  std::string error() const {
-    return test::error_of([&] { opened(); });
-  }
-};
+using SurveyTest = test::SmallSurvey;
 
 std::vector<std::size_t> images_of(const Survey& survey) {
   std::vector<std::size_t> images;
@@ -92,9 +80,8 @@ TEST_F(SurveyTest, AFolderMustHaveAMaskForEachPhotograph) {
   const std::filesystem::path masks = folder_ / "masks";
   std::filesystem::create_directories(masks);
   options_.mask_folder = masks;
-  const LogCapture log;
   EXPECT_TRUE(opened().views[0].mask.empty());
-  EXPECT_THAT(log.text(), HasSubstr("is not used, because ignore_mask_label is -1"));
+  EXPECT_THAT(events_.lines, HasSubstr("is not used, because ignore_mask_label is -1"));
   options_.ignore_mask_label = 0;
   EXPECT_THAT(error(), AllOf(HasSubstr("mask_folder"), HasSubstr("no mask for image")));
   for (const char* name : {"masks/image0.png", "masks/image2.png"}) write_mask(name, 1);
@@ -104,11 +91,10 @@ TEST_F(SurveyTest, AFolderMustHaveAMaskForEachPhotograph) {
 TEST_F(SurveyTest, APhotographWithoutMaskIsAWarning) {
   options_.ignore_mask_label = 0;
   write_mask("image0.mask.png", 1);
-  const LogCapture log;
   const Survey survey = opened();
   EXPECT_EQ(survey.views[0].mask, folder_ / "image0.mask.png");
   EXPECT_TRUE(survey.views[1].mask.empty());
-  EXPECT_THAT(log.text(), HasSubstr("image2.png: no mask: looked for"));
+  EXPECT_THAT(events_.lines, HasSubstr("image2.png: no mask: looked for"));
 }
 
 TEST_F(SurveyTest, TheFingerprintDependsOnPhotographsMasksAndCameras) {
