@@ -89,12 +89,31 @@ class Installed(Case):
                           b"property float x\nproperty float y\nproperty float z\nend_header\n" +
                           struct.pack("<6f", 1, 2, 3, 4, 5, 6))
         self.assertEqual(output_of(build / "count_points", cloud), "2\n")
-        # One call of the library. That it finds the fault of this scene shows that it is linked.
-        missing = self.folder / "missing.mvs"
-        run = subprocess.run([build / "densify_scene", missing, self.folder], text=True,
-                             capture_output=True, timeout=60)
-        self.assertEqual(run.returncode, 1)
-        self.assertIn(str(missing), run.stderr)
+        self.check_densify(prefix / "bin", build / "densify_scene")
+
+    def check_densify(self, programs, densify):
+        """Runs a survey under water by the library: with progress, stopped, continued, and with a refused option."""
+        dive, scene, out = self.folder / "dive", self.folder / "scene.mvs", self.folder / "out"
+        output_of(programs / "SimulateUnderwater", "--preset", "closeup", "--views", 4, "--width", 240, "--height", 180,
+                  "--coarseness", 4, "--medium", "water", "-o", dive)
+        output_of(programs / "InterfaceCOLMAP", "-i", dive / "sparse", "--image-folder", dive / "water", "--housing",
+                  dive / "housing.json", "-o", scene)
+        out.mkdir()
+
+        def run(*arguments):
+            return subprocess.run([str(word) for word in (densify, scene, out, *arguments)], text=True,
+                                  capture_output=True, timeout=240)
+
+        refused = run(0, 0)
+        self.assertEqual(refused.returncode, 1, refused.stdout)
+        self.assertRegex(refused.stderr, r"^fusion_tiles 0: .*\n$")
+        stopped = run(1)
+        self.assertEqual((stopped.returncode, stopped.stdout.splitlines()[-1]), (2, "stopped"), stopped.stderr)
+        self.assertFalse((out / "dense.ply").exists())
+        whole = run()
+        self.assertEqual(whole.returncode, 0, whole.stderr)
+        self.assertRegex(whole.stdout, r"Estimated depth maps: [123] maps existed already\n")
+        self.assertRegex(whole.stdout, r"Fused depth maps: 4 of 4\n(.*\n)*[1-9]\d{3,} points in ")
 
 
 class DebianPackage(Case):
