@@ -3,6 +3,7 @@
 
 #include "base/console.h"
 #include "base/log.h"
+#include "base/memory.h"
 #include "densify/densify.h"
 #include "options.h"
 #include "without_effect.h"
@@ -28,6 +29,7 @@ void say_who_may_read(const densify::Report& report, const Options& options) {
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
+  share_one_heap();
   const densify::Report report = densify::densify(
       options.settings,
       [&](const densify::SceneFacts& facts) { warn_of_options_without_effect(options, facts); },

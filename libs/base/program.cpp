@@ -24,6 +24,7 @@
 #include "base/option_values.h"
 #include "base/out_of_memory.h"
 #include "base/output_name.h"
+#include "base/quiet_errors.h"
 #include "base/standard_streams.h"
 
 namespace axial {
@@ -411,6 +412,7 @@ void say_error(const std::string& name, std::string_view what) {
 int run_program(const std::string& name, const std::function<int()>& body) {
   try {
     start_log(name, line_start(STDOUT_FILENO));
+    filter_errors();
     return body();
   } catch (const std::exception& error) {
     say_error(name, is_out_of_memory(error) ? "out of memory" : as_message(error.what()));

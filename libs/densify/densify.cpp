@@ -230,7 +230,6 @@ struct JobRun {
 
 Report densify(const Options& options, const SceneObserver& observer, const Context& context) {
   check(options);
-  share_one_heap();
   const ThreadLimit threads(options.max_threads);
   // If its folder cannot be made, require_writable reports it.
   const OutputLock lock = lock_output(options.output.scene, use_of_output(options));

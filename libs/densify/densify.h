@@ -53,9 +53,9 @@ struct Report {
 // * `context` hears progress, results and warnings, and may stop the run. `observer`, unless it is
 // empty, is
 //   called once, before views are selected. It is not called for a point export.
-// * Call densify() before other threads start, and make only one run at a time. The reason: the
-//   call makes all threads of the process share one heap (share_one_heap() in base/memory.h), also
-//   after the run.
+// * Make only one run at a time. The bound of the memory holds if the program has called
+//   share_one_heap() (base/memory.h). The run calls map_large_blocks(), which has an effect on the
+//   process after the run, too.
 //
 // Throws an Error for
 // - options that contradict each other (check() in options.h),

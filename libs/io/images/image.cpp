@@ -4,17 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iostream>
-#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <streambuf>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/quiet_errors.h"
 #include "private/images/image_codecs.h"
 #include "scene/resolution.h"
 
@@ -22,47 +20,6 @@ namespace axial::io {
 namespace fs = std::filesystem;
 
 namespace {
-
-// OpenCV prints messages besides throwing exceptions: through its log, and directly to std::cerr.
-// They would appear before ours. While a Silence exists, nothing that its thread writes to
-// std::cerr is printed.
-class Silence {
- public:
-  Silence() {
-    [[maybe_unused]] static const bool installed = install();
-    silent_ = true;
-  }
-  ~Silence() { silent_ = false; }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
-
- private:
-  class Filter : public std::streambuf {
-   public:
-    explicit Filter(std::streambuf* to) : to_(to) {}
-
-   private:
-    int overflow(int c) override {
-      if (silent_ || c == traits_type::eof()) return traits_type::not_eof(c);
-      return to_->sputc(traits_type::to_char_type(c));
-    }
-    std::streamsize xsputn(const char* text, std::streamsize size) override {
-      return silent_ ? size : to_->sputn(text, size);
-    }
-    int sync() override { return to_->pubsync(); }
-
-    std::streambuf* to_;
-  };
-
-  static bool install() {
-    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-    std::cerr.rdbuf(new Filter(std::cerr.rdbuf()));  // never deleted
-    return true;
-  }
-
-  static thread_local bool silent_;
-};
-thread_local bool Silence::silent_ = false;
 
 void refuse_truncated(const std::string& bytes, const fs::path& path) {
   if (bytes.empty()) fail("{}: is empty, not an image", path.string());
@@ -111,7 +68,7 @@ void require_known_format(std::string_view bytes, const fs::path& path) {
 // Decodes formats that image_codecs.h does not handle.
 cv::Mat decode_by_opencv(const std::string& bytes, const fs::path& path, int flags) {
   require_known_format(bytes, path);
-  const Silence silence;
+  const QuietErrors quiet;  // OpenCV prints messages besides throwing exceptions
   const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
   cv::Mat image;
   try {
@@ -171,7 +128,7 @@ cv::Mat without_copies(const cv::Mat& image) {
 
 void write_encoded(const fs::path& path, const std::string& extension, const cv::Mat& image,
                    const std::vector<int>& parameters) {
-  const Silence silence;
+  const QuietErrors quiet;  // OpenCV prints messages besides throwing exceptions
   std::vector<unsigned char> bytes;
   bool encoded = false;
   try {

@@ -48,26 +48,33 @@ int map_stream(thandle_t handle, void** data, toff_t* size) {
   return 1;
 }
 
-// The first error message of the library about the file that this thread reads.
-thread_local std::array<char, 300> complaint;
+// The first error message of the library about a file.
+using Complaint = std::array<char, 300>;
 
-void hear_error(const char*, const char* format, va_list arguments) {
+int hear_error(TIFF*, void* data, const char*, const char* format, va_list arguments) {
+  auto& complaint = *static_cast<Complaint*>(data);
   if (complaint[0] == '\0') std::vsnprintf(complaint.data(), complaint.size(), format, arguments);
+  return 1;  // the handler of the process is not called
+}
+
+int ignore_warning(TIFF*, void*, const char*, const char*, va_list) {
+  return 1;
 }
 
 class Tiff {
  public:
   Tiff(std::string_view bytes, const fs::path& path) : stream_{bytes}, path_(path) {
-    complaint[0] = '\0';
-    TIFFSetErrorHandler(hear_error);
-    TIFFSetWarningHandler(nullptr);
+    const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(
+        TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
+    TIFFOpenOptionsSetErrorHandlerExtR(options.get(), hear_error, &complaint_);
+    TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignore_warning, nullptr);
     // The data must be mapped, because libtiff 4.5 misreads tiles of separate planes otherwise.
-    file_.reset(TIFFClientOpen(
+    file_.reset(TIFFClientOpenExt(
         "TIFF data", "r", &stream_, read_stream,
         [](thandle_t, void*, tmsize_t) { return tmsize_t{0}; }, seek_stream,
         [](thandle_t) { return 0; },
         [](thandle_t handle) { return toff_t{static_cast<Stream*>(handle)->bytes.size()}; },
-        map_stream, [](thandle_t, void*, toff_t) {}));
+        map_stream, [](thandle_t, void*, toff_t) {}, options.get()));
     if (!file_) give_up("no TIFF directory");
     width = number<std::uint32_t>(TIFFTAG_IMAGEWIDTH);
     height = number<std::uint32_t>(TIFFTAG_IMAGELENGTH);
@@ -97,7 +104,7 @@ class Tiff {
 
   [[noreturn]] void give_up(const char* otherwise) const {
     fail("{}: cannot be decoded: {}", path_.string(),
-         complaint[0] != '\0' ? complaint.data() : otherwise);
+         complaint_[0] != '\0' ? complaint_.data() : otherwise);
   }
 
   std::uint32_t width, height;
@@ -154,6 +161,7 @@ class Tiff {
   }
 
   Stream stream_;
+  Complaint complaint_{};
   const fs::path& path_;
   std::unique_ptr<TIFF, Close> file_;
 };

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/quiet_errors.h"
+
+#include <iostream>
+#include <streambuf>
+
+namespace axial {
+namespace {
+
+thread_local bool is_quiet = false;
+
+class Filter : public std::streambuf {
+ public:
+  explicit Filter(std::streambuf* to) : to_(to) {}
+
+ private:
+  int overflow(int c) override {
+    if (is_quiet || c == traits_type::eof()) return traits_type::not_eof(c);
+    return to_->sputc(traits_type::to_char_type(c));
+  }
+  std::streamsize xsputn(const char* text, std::streamsize size) override {
+    return is_quiet ? size : to_->sputn(text, size);
+  }
+  int sync() override { return to_->pubsync(); }
+
+  std::streambuf* to_;
+};
+
+}  // namespace
+
+void filter_errors() {
+  // Never deleted: other threads may write to std::cerr until the program ends.
+  [[maybe_unused]] static const auto* before = std::cerr.rdbuf(new Filter(std::cerr.rdbuf()));
+}
+
+QuietErrors::QuietErrors() {
+  is_quiet = true;
+}
+
+QuietErrors::~QuietErrors() {
+  is_quiet = false;
+}
+
+}  // namespace axial
