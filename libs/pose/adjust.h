@@ -156,8 +156,9 @@ struct Uncertainty {
   double scale_sigma = 0;
   // The standard deviation of the camera centres relative to each other: the root mean square of
   // sigmas_after_similarity() (shape_sigma.h) for up to 16 images, spread evenly over the images
-  // with observations, divided by median_distance(). It includes errors as `scale_sigma` does. It
-  // is large where few points link the images, for example along strips with little overlap.
+  // with observations, divided by median_distance(). It is large where few points link the
+  // images, for example along strips with little overlap. Errors of measured numbers that are not
+  // free are not included: they have another cause, and another remedy.
   // Infinite if nothing determines it. 0 if poses are known, or with fewer than three images.
   double shape_sigma = 0;
   std::size_t least_linked = 0;  // the image with the largest part in `shape_sigma`

@@ -245,11 +245,7 @@ class Normal {
         moved.col(column) = covariance_->times(direction);
       }
     }
-    Eigen::MatrixXd covariance = directions.transpose() * moved;
-    if (!fixed_.empty()) {
-      const Eigen::MatrixXd by_fixed = by_fixed_.transpose() * moved;
-      covariance += by_fixed.transpose() * by_fixed;
-    }
+    const Eigen::MatrixXd covariance = directions.transpose() * moved;
     const Eigen::VectorXd sigmas = sigmas_after_similarity(centres, covariance);
     Eigen::Index largest = 0;
     sigmas.maxCoeff(&largest);
