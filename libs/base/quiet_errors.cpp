@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/quiet_errors.h"
 
+#include <cstddef>
 #include <iostream>
+#include <new>
 #include <streambuf>
 
 namespace axial {
@@ -29,8 +31,10 @@ class Filter : public std::streambuf {
 }  // namespace
 
 void filter_errors() {
-  // Never deleted: other threads may write to std::cerr until the program ends.
-  [[maybe_unused]] static const auto* before = std::cerr.rdbuf(new Filter(std::cerr.rdbuf()));
+  // Never destroyed: std::cerr is flushed after the destructors of static objects.
+  alignas(Filter) static std::byte place[sizeof(Filter)];
+  [[maybe_unused]] static const auto* before =
+      std::cerr.rdbuf(new (place) Filter(std::cerr.rdbuf()));
 }
 
 QuietErrors::QuietErrors() {
