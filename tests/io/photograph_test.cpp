@@ -10,6 +10,7 @@
 #include <random>
 
 #include "base/atomic_file.h"
+#include "base/quiet_errors.h"
 #include "io/images/image.h"
 #include "io/wrong_input.h"
 
@@ -300,6 +301,7 @@ TEST_F(PhotographTest, NoLibraryPrints) {
   files.emplace_back("NITF02.10 and other formats of GDAL");
   const fs::path path = folder_ / "wrong";
   std::string message;
+  filter_errors();  // as a program does
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   const auto attempt = [&](const std::function<void()>& read) {
