@@ -4,28 +4,21 @@
 #include <gtest/gtest.h>
 
 #include <iostream>
-#include <sstream>
 #include <thread>
 
 namespace axial {
 namespace {
 
 TEST(QuietErrors, LeaveOutWhatTheirThreadWrites) {
-  std::ostringstream text;
-  std::streambuf* const before = std::cerr.rdbuf(text.rdbuf());
-  {
-    const QuietErrors quiet;
-    std::cerr << "no filter, ";
-  }
   filter_errors();
+  testing::internal::CaptureStderr();
   {
     const QuietErrors quiet;
     std::cerr << "left out, ";
     std::thread([] { std::cerr << "another thread, "; }).join();
   }
-  std::cerr << "afterwards";
-  std::cerr.rdbuf(before);
-  EXPECT_EQ(text.str(), "no filter, another thread, afterwards");
+  std::cerr << "afterwards" << std::flush;
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "another thread, afterwards");
 }
 
 }  // namespace
