@@ -53,7 +53,7 @@ struct Registered {
 // `bundle` the bundle of it (pose::to_bundle()). Afterwards `model` is in metres, as far as
 // `options` determine the scale, has the new poses, observations and points besides its own
 // observations, and contains no photograph without a pose. New points are grey. `options`: known
-// lengths that cannot be used are left out. `context` hears lines about the progress.
+// lengths that cannot be used are left out. `context` gets lines about the progress.
 Registered register_left_out(io::ColmapModel& model, const LeftOutPhotographs& left_out,
                              pose::Bundle bundle, pose::RefineOptions options,
                              const Context& context);

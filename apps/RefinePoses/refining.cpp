@@ -26,7 +26,7 @@ LocalFrame enter_local_frame(std::vector<pose::KnownPosition>& positions) {
 }
 
 // The kind of port for --housing unknown. `bundle` is behind usual flat ports and is brought to
-// metres. `context` hears the errors of each kind. Without a port, cameras are those behind a dome
+// metres. `context` gets the errors of each kind. Without a port, cameras are those behind a dome
 // around the camera centre.
 pose::PortKind likely_kind(pose::Bundle& bundle, const pose::AdjustOptions& adjust,
                            const Context& context) {

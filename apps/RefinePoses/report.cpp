@@ -215,10 +215,9 @@ std::optional<std::string> shape_warning(const Results& results, const pose::Unc
   if (known.shape_sigma <= kLargest || sigma <= kLargestOfLength * length_of(results.bundle))
     return {};
   return fmt::format(
-      "{}, and least at {}: too few points link the photographs, so that "
-      "the model can be bent. Take photographs that overlap by 60 % or more along strips, or "
-      "strips "
-      "that cross, or state positions with --scale-from",
+      "{}, and least at {}: too few points link the photographs, so that the model can be bent. "
+      "Take photographs that overlap by 60 % or more along strips, or strips that cross, or state "
+      "positions with --scale-from",
       shape_line(known), results.bundle.images[known.least_linked].name);
 }
 

@@ -57,8 +57,9 @@ std::optional<std::string> scale_warning(const Results& results, const pose::Unc
 // Returns the line for the log about Uncertainty::shape_sigma.
 std::string shape_line(const pose::Uncertainty& known);
 
-// Returns a warning if the centres of the cameras are known to more than 0.2 % of the distance of
-// the points relative to each other, and to more than 1/2000 of the length of the survey.
+// Returns a warning if the standard deviation of the cameras' centres relative to each other
+// (Uncertainty::shape_sigma) is above 0.2 % of the distance of the points and above 1/2000 of the
+// length of the survey.
 std::optional<std::string> shape_warning(const Results& results, const pose::Uncertainty& known);
 
 // Returns the report as JSON. Numbers that are not known are null. If `known`, the standard

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The surroundings of a stage: who hears its events, and who may stop it. A function that logs,
-// reports progress or works long takes a Context as its last argument. Without a Context, it is
-// silent and cannot be stopped.
+// The caller of a stage gets the events of the stage through a Context, and may stop the stage. A
+// function that warns, reports results or progress, or works long takes a Context as its last
+// argument. Without a Context, it is silent and cannot be stopped.
 #pragma once
 
 #include <fmt/core.h>

@@ -14,7 +14,7 @@ namespace axial::densify {
 // Checks whether the depth maps agree with the sparse points and with each other. Takes up to 16
 // reference images, evenly spread over Project::references. Compares the map of each of these
 // images with the image's sparse points, and with the maps of the first three source views that
-// have maps. Says the numbers in a line. The line is a warning if the maps disagree
+// have maps. `context` gets a line with the numbers. The line is a warning if the maps disagree
 // (AgreementLimits in depth/agreement.h). Writes the numbers to the file `report`, which is
 // replaced, unless the path is empty. Changes nothing else.
 // `read_map`: returns the map of a reference image; up to plan.in_flight threads call it at the

@@ -50,7 +50,7 @@ struct Report {
 // * With TileJob the run makes only one tile of the cloud. With FusionOptions::tiles the run makes
 //   the cloud from all tiles. A tile needs complete depth maps. Its points are those of the cloud
 //   in one piece, except for a few near the borders of the tile (tiles.h).
-// * `context` hears progress, results and warnings, and may stop the run. `observer`, unless it is
+// * `context` gets progress, results and warnings, and may stop the run. `observer`, unless it is
 // empty, is
 //   called once, before views are selected. It is not called for a point export.
 // * Make only one run at a time. The bound of the memory holds if the program has called

@@ -38,8 +38,8 @@ std::uint64_t bytes_needed(std::size_t merged_points);
 // Reconstructs the surface that the images of `scene` see in `cloud`. The views of the cloud are
 // indices into Scene::images. The result is in the frame of scene and cloud, oriented, manifold and
 // free of self-intersections. Parts of the surface without points are left out. The cloud is freed
-// when its points are merged. Says the result of each step. The result is the same for any number
-// of threads. Throws an Error in these cases:
+// when its points are merged. `context` gets the result of each step. The result is the same for
+// any number of threads. Throws an Error in these cases:
 //
 // * the cloud has no points or no views,
 // * a view is not a calibrated image of the scene,

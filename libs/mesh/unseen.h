@@ -53,7 +53,7 @@ struct UnseenOptions {
 // are no points inside. Other large faces are true surface with little texture.
 //
 // Exception: unseen faces inside the seen surface count as seen if they form a set whose bounding
-// box has a diagonal of at most `small_holes` median longest edges. `context` hears the numbers of
+// box has a diagonal of at most `small_holes` median longest edges. `context` gets the numbers of
 // cameras. The result does not depend on the number of threads.
 //
 // Precondition: the mesh is manifold and oriented. Throws an Error for a mesh that
@@ -81,8 +81,8 @@ Mesh without_unseen(const Mesh& mesh, std::vector<std::uint8_t> unseen, double c
                     UnseenReport* report = nullptr);
 
 // Returns `mesh` without its unseen faces (without_unseen()), or, if UnseenOptions::keep is true,
-// with marks of its unseen faces (Mesh::unseen). Says the numbers and the shares of area. With
-// fewer than two cameras, nothing is removed or marked, and it warns. Throws an Error if
+// with marks of its unseen faces (Mesh::unseen). `context` gets the numbers and the shares of area.
+// With fewer than two cameras, nothing is removed or marked, and it warns. Throws an Error if
 // removal would leave no face. Precondition and other Errors as for unseen_faces().
 Mesh treat_unseen(Mesh mesh, std::span<const geometry::PosedCamera> cameras,
                   const UnseenOptions& options, const Context& context = {});

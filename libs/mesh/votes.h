@@ -58,7 +58,7 @@ double expected_error(const MergedPoints& points, std::size_t i, const VoteOptio
 //
 // With `weak_support` further votes for inside follow (weak_support.h). At last the cost of each
 // facet rises by quality_factor times shape_cost() (facet_quality.h), so that surfaces through well
-// shaped tetrahedra are preferred. `context` hears the number of points whose rays have been cast.
+// shaped tetrahedra are preferred. `context` gets the number of points whose rays have been cast.
 Votes cast_votes(const Tetrahedra& tetrahedra, const MergedPoints& points, const ViewRays& rays,
                  const VoteOptions& options = {}, const Context& context = {});
 

@@ -167,7 +167,7 @@ struct Uncertainty {
 // Returns the first-order standard deviations of the result of adjust(), from the normal equations
 // with the points eliminated. Precondition: adjust() was called for `bundle` with the same
 // `options`. The observations are weighted with their observed standard deviation and not with
-// `options.pixel_sigma`. With AdjustOptions::many_images or more images, `context` hears the start
+// `options.pixel_sigma`. With AdjustOptions::many_images or more images, `context` gets the start
 // of each part of the work.
 Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options,
                         const Context& context = {});

@@ -64,9 +64,9 @@ void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 // `options.adjust.loss_sigmas` and `options.tracks.max_error`. Later rounds use the limits
 // themselves, and observed_pixel_sigma() of the round before. After
 // each round, observations are weighed by the sizes of their features (weigh_by_size()). The first
-// round also drops repeated observations (drop_repeated()). `context` hears a line for each
+// round also drops repeated observations (drop_repeated()). `context` gets a line for each
 // round, and for an iteration of the solver if the last line is two seconds old (the lines of other
-// iterations are details). With AdjustOptions::many_images or more poses, it also hears the start
+// iterations are details). With AdjustOptions::many_images or more poses, it also gets the start
 // of each adjustment, and the rounds before the last adjustment end at an AdjustOptions::least_gain
 // of 0.1 or of `options.adjust` if that is larger: this is enough to find observations that do not
 // fit.

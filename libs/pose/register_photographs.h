@@ -42,7 +42,7 @@ struct RegisterReport {
 // image is added. Groups of images that share no point with the others join the bundle in this way,
 // one image after the other. Images that filter() drops can get another pose.
 //
-// The result does not depend on the number of threads. `context` hears a line after each
+// The result does not depend on the number of threads. `context` gets a line after each
 // adjustment. Precondition: the bundle is in metres and refined (refine()), and has observations.
 // Throws the errors of adjust().
 RegisterReport register_photographs(Bundle& bundle, const FeatureMatches& matches,

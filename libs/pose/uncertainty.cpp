@@ -14,6 +14,7 @@
 #include "pose/shape_sigma.h"
 #include "pose/sparse_cholesky.h"
 #include "scene/decompositions.h"
+#include "scene/sparse_places.h"
 
 namespace axial::pose {
 namespace {
@@ -261,10 +262,8 @@ class Normal {
     std::vector<std::size_t> observed;
     for (std::size_t i = 0; i < bundle_.images.size(); ++i)
       if (problem_.is_observed(i)) observed.push_back(i);
-    const std::size_t count = std::min<std::size_t>(16, observed.size());
     std::vector<std::size_t> sample;
-    for (std::size_t k = 0; k < count; ++k)
-      sample.push_back(observed[count == 1 ? 0 : k * (observed.size() - 1) / (count - 1)]);
+    for (const std::size_t k : spread_indices(observed.size(), 16)) sample.push_back(observed[k]);
     return sample;
   }
 

@@ -32,7 +32,7 @@ std::optional<State> read_state(const std::filesystem::path& file, const std::st
 // killed run, is kept, too.
 class StateOfRun {
  public:
-  // `context` hears the warning. It must exist as long as the object.
+  // `context` gets the warning. It must exist as long as the object.
   StateOfRun(std::filesystem::path file, const Context& context)
       : file_(std::move(file)), context_(context) {}
   // Removes the state if write() has written it and writing() has thrown nothing.

@@ -333,7 +333,8 @@ TEST(Uncertainty, OfTheShapeDoesNotDependOnTheScale) {
 }
 
 // The two halves of a survey, with all common points or with four of them. Images of the same half
-// have as many common points in both cases.
+// have as many common points in both cases. A sum over n points has an error of 1 / sqrt(n): four
+// points in place of the dozens that two halves share make it at least three times as large.
 TEST(Uncertainty, OfTheShapeIsLargeWhereFewPointsLinkTheImages) {
   const Bundle whole = survey(camera_behind(flat_port()), {.images = 8, .noise = 0.5});
   Bundle weak = whole;
@@ -344,7 +345,6 @@ TEST(Uncertainty, OfTheShapeIsLargeWhereFewPointsLinkTheImages) {
   options.distances.push_back(known_length(whole));
   const double sigma = uncertainty(whole, options).shape_sigma;
   EXPECT_GT(uncertainty(weak, options).shape_sigma, 3 * sigma);
-  EXPECT_LT(sigma, 0.003);
 }
 
 // Starts from a distance with an error of 5 mm and a tilt with an error of 1 degree.
