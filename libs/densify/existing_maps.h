@@ -50,7 +50,7 @@ void check_overwriting(const Project& project, bool overwrite, const ExistingMap
 
 // For runs that make no maps: removes images without a map from Project::references. Sets the
 // cameras of the kept images in Project::views to the resolution of their maps. `context` gets the
-// number of images have a map, as a warning if some have none. Throws an Error
+// number of images that have a map, as a warning if some have none. Throws an Error
 // - if no reference has a map,
 // - for a damaged map,
 // - for a foreign map of an image whose camera has a port or a distorted lens,
