@@ -7,18 +7,21 @@ import pathlib
 import shutil
 import signal
 import subprocess
-import tempfile
 import time
 import unittest
+import unittest.mock
 
 import small_slurm
 from pipeline_folder import reconstruct_command, simulate
-from programs import BIN, main
+from programs import BIN, main, new_folder
 from support import colmap_text
 
 RESULTS = ("scene_dense.mvs", "scene_dense.ply", "scene_dense_mesh.ply", "scene_dense_refined.ply",
            *(f"scene_textured.tile{tile}-2.{kind}" for tile in (1, 2) for kind in ("glb", "ply")),
            "scene_map.dem.tif", "scene_map.ortho.tif")
+VIEWS = 40
+SLURM = ("--cluster", "slurm", "--snakemake=--max-status-checks-per-second 1")
+ON_TWO_NODES = unittest.skipIf(small_slurm.reason_to_skip(), small_slurm.reason_to_skip())
 DENSIFY = "--resolution-level 0 --min-resolution 100 --geometric-iters 1 --plan-parts 2"
 
 # COLMAP's models differ from run to run. This stand-in gives every run the same model.
@@ -53,16 +56,15 @@ def put_script(path, text):
     path.chmod(0o755)
 
 
-class Survey(unittest.TestCase):
-    """A survey of 60 small views, and the results of `reconstruct` alone."""
+@unittest.skipUnless(shutil.which("snakemake"), "snakemake is not installed")
+class Cluster(unittest.TestCase):
+    """A survey of small views, and the results of `reconstruct` alone, with which all cases compare."""
 
     @classmethod
     def setUpClass(cls):
-        keeper = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.addClassCleanup(keeper.cleanup)
-        cls.folder = pathlib.Path(keeper.name).resolve()
+        cls.folder = pathlib.Path(new_folder(cls.addClassCleanup))
         scene = cls.folder / "scene"
-        simulate(scene, "survey", 60, (160, 120))
+        simulate(scene, "survey", VIEWS, (160, 120))
         colmap_text.copy(scene / "sparse", cls.folder / "model", lambda number: number % 60 == 0)
         cls.programs = cls.folder / "bin"
         cls.programs.mkdir()
@@ -108,9 +110,6 @@ class Survey(unittest.TestCase):
         tiles = {f"{step}-tile-{tile}of2" for step in tiled for tile in (1, 2)}
         self.assertLessEqual(parts | {"depth-photometric-whole"} | tiles, self.steps_done(out))
 
-
-@unittest.skipUnless(shutil.which("snakemake"), "snakemake is not installed")
-class OnThisMachine(Survey):
     def wait_for_part(self, process, out):
         """Waits until a job of the depth maps has begun and is not done."""
         steps = self.folder / out / "steps"
@@ -157,18 +156,13 @@ class OnThisMachine(Survey):
         self.assertEqual((self.folder / "twice" / "scene_dense.ply").read_bytes(),
                          (self.folder / "expected" / "scene_dense.ply").read_bytes())
 
-
-@unittest.skipIf(small_slurm.reason_to_skip(), small_slurm.reason_to_skip())
-class OnTwoNodes(Survey):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.cluster = small_slurm.Cluster()
-        cls.addClassCleanup(cls.cluster.stop)
-        cls.cluster.start()
-        cls.environment["SLURM_CONF"] = cls.cluster.environment["SLURM_CONF"]
-
-    OPTIONS = ("--cluster", "slurm", "--snakemake=--max-status-checks-per-second 1")
+    def start_cluster(self):
+        self.cluster = small_slurm.Cluster()
+        self.addCleanup(self.cluster.stop)
+        self.cluster.start()
+        environment = unittest.mock.patch.dict(self.environment, SLURM_CONF=self.cluster.environment["SLURM_CONF"])
+        environment.start()
+        self.addCleanup(environment.stop)
 
     def node_of_part(self):
         """A job of the depth maps that runs, and its node."""
@@ -178,15 +172,17 @@ class OnTwoNodes(Survey):
                 return job, node
         return None
 
+    @ON_TWO_NODES
     def test_an_interrupted_run_leaves_no_jobs(self):
         """With eight jobs that never end, snakemake asks for their states most of the time. While it
         asks, it cancels nothing itself."""
+        self.start_cluster()
         programs = self.folder / "slow"
         shutil.copytree(self.programs, programs, symlinks=True)
         (programs / "DensifyPointCloud").unlink()
         put_script(programs / "DensifyPointCloud",
                    SLOW.format(program=pathlib.Path(BIN).resolve() / "DensifyPointCloud"))
-        process = self.start("interrupted", *self.OPTIONS, f"--densify={DENSIFY[:-1]}8", "--programs",
+        process = self.start("interrupted", *SLURM, f"--densify={DENSIFY[:-1]}8", "--programs",
                              str(programs), start_new_session=True)
         self.cluster.wait_for(lambda: self.cluster.ask("squeue", "-h", "-o", "%j").count("of8-") == 8, 120)
         time.sleep(4)  # until snakemake asks for the states of all of them
@@ -197,28 +193,30 @@ class OnTwoNodes(Survey):
         left = set(self.cluster.ask("squeue", "--noheader", "--format", "%T").split())
         self.assertLessEqual(left, {"COMPLETING"})
 
+    @ON_TWO_NODES
     def test_gives_the_same_bytes_also_if_a_node_dies(self):
-        said = self.reconstruct("out", *self.OPTIONS)
-        self.check("out")
+        self.start_cluster()
+        said = self.reconstruct("nodes", *SLURM)
+        self.check("nodes")
         self.assertIn("Trying to restart job", said)  # TextureMesh, with twice the memory
         for node in small_slurm.NODES:
             self.assertRegex(self.cluster.log("slurmctld"), f"( on |NodeList=){node}\\b")
-        out = self.folder / "out"
+        out = self.folder / "nodes"
         # The records of begun steps stay: without them, the rest of the files would be the user's.
         for file in [*out.glob("*.dmap*"), out / "steps" / "plan.json", *out.glob("steps/plan.done*"),
                      *out.glob("steps/depth-*.done*"), *out.glob("steps/densify*.done*"),
                      *out.glob("scene_dense*")]:
             file.unlink()
-        process = self.start("out", *self.OPTIONS, "--until", "cloud")
+        process = self.start("nodes", *SLURM, "--until", "cloud")
         self.cluster.wait_for(self.node_of_part, 120)
         job, node = self.node_of_part()
         self.cluster.kill(node)
-        self.assertNotIn("depth-photometric-1of2", self.steps_done("out"))
+        self.assertNotIn("depth-photometric-1of2", self.steps_done("nodes"))
         said = process.communicate(timeout=300)[0]
         self.assertEqual(process.returncode, 0, said)
         self.assertRegex(self.cluster.log("slurmctld"),
                          f"requeue job JobId={job} due to failure of node {node}")
-        self.check("out", RESULTS[:2])
+        self.check("nodes", RESULTS[:2])
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 """From simulated photographs to evaluated clouds, in air and behind a tilted port under water. Four
 views of 512 x 384 of the close-up scene, with true poses."""
 
-import json
+import functools
 import os
 import re
 import signal
@@ -10,7 +10,7 @@ import subprocess
 import time
 
 from close_up import FINE, GSD, QUICK, CloseUp
-from programs import BIN, cloud_size, files_below, main, read, write
+from programs import BIN, cloud_size, files_below, main, must, new_folder, read, read_json, write
 
 
 # All three filters of depth maps: the adjusting filter, which is off by default, is one more stage.
@@ -19,6 +19,15 @@ ALL_STAGES = ("--postprocess-dmaps", "7", *QUICK)
 
 class EndToEnd(CloseUp):
     SCENE = FINE
+
+    @classmethod
+    @functools.cache
+    def expected(cls):
+        """The outputs of a run under water with all stages, the same for all cases."""
+        folder = os.path.join(new_folder(cls.addClassCleanup), "reference")
+        cls.imported(os.path.join(folder, "scene.mvs"), "water")
+        must("DensifyPointCloud", "-i", "scene.mvs", "-w", folder, "--refractive", "--max-threads", "1", *ALL_STAGES)
+        return cls.outputs(folder)
 
     def check_cloud(self, result):
         # OpenMVS has a mean of half a GSD on such scenes at full resolution, this run a quarter.
@@ -49,21 +58,24 @@ class EndToEnd(CloseUp):
         # The air gap of 3 cm and the tilt shift rays by centimetres. Matching errs by about 1 mm.
         self.assertGreater(ignored["median"], 5 * obeyed["median"])
 
-    def outputs(self, folder):
-        return {name: read(self.path(folder, name)) for name in files_below(self.path(folder))
+    @staticmethod
+    def outputs(folder):
+        return {name: read(os.path.join(folder, name)) for name in files_below(folder)
                 if name.endswith((".dmap", ".ply", ".json", "_dense.mvs"))}
 
+    def check_outputs(self, folder, *leave_out):
+        """Compares the outputs in a folder of this case with those of the shared run."""
+        found = {name: data for name, data in self.outputs(self.path(folder)).items() if name not in leave_out}
+        self.assertEqual(found.keys(), self.expected().keys())
+        for name, content in found.items():
+            self.assertEqual(content, self.expected()[name], name)
+
     def test_the_same_bytes_for_any_number_of_threads_and_after_a_kill(self):
-        for folder in ("one", "two", "killed"):
+        self.assertLess({"depth0003.dmap", "scene_dense.ply"}, set(self.expected()))
+        for folder in ("two", "killed"):
             self.import_scene("water", folder)
-        self.densify("one", "--refractive", "--max-threads", "1", *ALL_STAGES)
         self.densify("two", "--refractive", "--max-threads", "2", *ALL_STAGES)
-        expected = self.outputs("one")
-        self.assertIn("depth0003.dmap", expected)
-        self.assertIn("scene_dense.ply", expected)
-        self.assertEqual(expected.keys(), self.outputs("two").keys())
-        for name, content in self.outputs("two").items():
-            self.assertEqual(content, expected[name], f"{name} depends on the number of threads")
+        self.check_outputs("two")
 
         self.kill_when_finished("killed", "depth0001.photometric.dmap")
         self.assertNotIn("scene_dense.ply", files_below(self.path("killed")))
@@ -71,10 +83,7 @@ class EndToEnd(CloseUp):
         write(self.path("killed", "depth0000.photometric.4194999.tmp.4194999.tmp.dmap"), b"half")
         resumed = self.densify("killed", "--refractive", *ALL_STAGES)
         self.assertRegex(resumed, r"Estimated depth maps: [123] maps existed already")
-        again = self.outputs("killed")
-        self.assertEqual(again.keys(), expected.keys())
-        for name, content in again.items():
-            self.assertEqual(content, expected[name], f"{name} depends on the interruption")
+        self.check_outputs("killed")
 
         self.assertIn("All 4 depth maps exist already",
                       self.densify("killed", "--refractive", *ALL_STAGES))
@@ -82,25 +91,22 @@ class EndToEnd(CloseUp):
         self.assertNotRegex(changed, "exist(ed)? already", "maps of other options were taken over")
 
     def test_parts_in_any_order_give_the_bytes_of_one_run(self):
-        for folder in ("whole", "parts"):
-            self.import_scene("water", folder)
-        self.densify("whole", "--refractive", *ALL_STAGES)
+        self.import_scene("water", "parts")
         run = self.command("parts", "--refractive", *ALL_STAGES)
         self.succeeds(*run, "--plan", "plan.json", "--plan-parts", "3")
-        plan = json.loads(read(self.path("parts", "plan.json")))
+        plan = read_json(self.path("parts", "plan.json"))
         self.assertEqual((plan["images"], plan["parts"]), (4, 3))
         self.assertEqual(plan["stages"][0], "photometric")
         self.assertEqual(plan["stages"][-1], "adjusted")
         self.assertEqual(list(plan["per_part"]), sorted(plan["stages"]))
-        self.assertEqual(len(json.loads(read(self.path("parts", "depth_inputs.json")))["contents"]), 4)
+        self.assertEqual(len(read_json(self.path("parts", "depth_inputs.json"))["contents"]), 4)
         self.refuses(".photometric.dmap: is missing", *run, "--until", "geometric1", "--part", "1/3")
         for stage in [*plan["stages"][:-1], "maps"]:
             memory = plan["per_part"]["adjusted" if stage == "maps" else stage]["max_memory_mb"]
             for part in (2, 3, 1):
                 self.succeeds(*run, "--until", stage, "--part", f"{part}/3", "--max-memory", memory)
         self.assertIn("All 4 depth maps exist already", self.succeeds(*run).stdout)
-        self.assertEqual({name: content for name, content in self.outputs("parts").items()
-                          if name not in ("plan.json", "depth_inputs.json")}, self.outputs("whole"))
+        self.check_outputs("parts", "plan.json", "depth_inputs.json")
 
     def test_refuses_wrong_parts(self):
         self.import_scene("air", "refused")
@@ -114,16 +120,12 @@ class EndToEnd(CloseUp):
         self.assertNotIn("p.json", files_below(self.path("refused")))
 
     def test_the_same_bytes_under_a_small_cap_on_memory(self):
-        for stages in (QUICK, ALL_STAGES):
-            with self.subTest(stages):
-                for folder in ("free", "capped"):
-                    self.import_scene("water", folder)
-                self.densify("free", "--refractive", *stages)
-                said = self.refuses("--max-memory 20: ", *self.command("capped", "--refractive", "--max-memory", "20",
-                                                                       *stages))
-                least = int(re.search(r"needs (\d+)", said.stderr)[1]) + 5
-                self.densify("capped", "--refractive", "--max-memory", least, *stages)
-                self.assertEqual(self.outputs("free"), self.outputs("capped"))
+        """With all stages. A test of densify does the same without the filters."""
+        self.import_scene("water", "capped")
+        capped = self.command("capped", "--refractive", *ALL_STAGES, "--max-memory")
+        said = self.refuses("--max-memory 20: ", *capped, "20")
+        self.succeeds(*capped, int(re.search(r"needs (\d+)", said.stderr)[1]) + 5)
+        self.check_outputs("capped")
 
     def test_crops_to_the_region_of_interest(self):
         self.import_scene("air", "region")
@@ -140,8 +142,8 @@ class EndToEnd(CloseUp):
     def test_the_dense_scene_keeps_its_housing(self):
         self.import_scene("water", "again")
         self.densify("again", "--refractive", *QUICK)
-        self.assertEqual(json.loads(read(self.path("again", "scene_dense.housing.json"))),
-                         json.loads(read(self.path("again", "scene.housing.json"))))
+        self.assertEqual(read_json(self.path("again", "scene_dense.housing.json")),
+                         read_json(self.path("again", "scene.housing.json")))
         before = read(self.path("again", "scene_dense.ply"))
         self.assertIn("All 4 depth maps exist already",
                       self.densify("again", "--refractive", *QUICK, scene="scene_dense.mvs"))
@@ -157,7 +159,7 @@ class EndToEnd(CloseUp):
 
         self.assertRegex(self.densify("verbose", *QUICK), progress)
         self.assertEqual(pictures(), set())
-        expected = self.outputs("verbose")
+        expected = self.outputs(self.path("verbose"))
 
         again = ("--geometric-iters", "1", *ALL_STAGES)
         said = self.densify("verbose", "-v", "1", *again)
@@ -171,7 +173,7 @@ class EndToEnd(CloseUp):
                     for kind in ("", ".normal", ".confidence")}
         self.assertIn("Memory ", self.densify("verbose", "-v", "3", *QUICK))
         self.assertEqual(pictures(), finished)
-        self.assertEqual(self.outputs("verbose"), expected)
+        self.assertEqual(self.outputs(self.path("verbose")), expected)
         self.densify("verbose", "-v", "5", *again)
         self.assertIn("depth0002.photometric.png", pictures())
         self.assertIn("depth0002.geometric1.normal.png", pictures())

@@ -10,7 +10,7 @@ import unittest.mock
 
 import tiny_scene
 from places import FAR, FAR_AND_ODD, move_mesh, move_model
-from programs import ProgramTest, main, must, read, write
+from programs import ProgramTest, main, must, read, read_json, write
 from readers import Ply, added, centres_of, points_of
 from support import colmap_text
 from worlds import CLOSEUP, ROUGH, Simulated, geo_offset, housing, lake
@@ -51,7 +51,7 @@ class BitForBit(ProgramTest):
         return Ply(read(self.path(*name)))
 
     def check_offset(self, *name):
-        self.assertEqual(json.loads(read(self.path(*name))), json.loads(geo_offset(*FAR)))
+        self.assertEqual(read_json(self.path(*name)), json.loads(geo_offset(*FAR)))
 
     def make(self, name):
         self.succeeds("InterfaceCOLMAP", "-i", self.path(name))
@@ -151,7 +151,7 @@ class FarScene(Simulated):
             self.path("result.json"), *options, timeout=60)
         self.assertNotIn("resolution is only", result.stdout)
         return (re.findall(r"(?:points to|truth to|^2 +\d\.\d+ +\d\.).*", result.stdout, re.M),
-                json.loads(read(self.path("result.json"))))
+                read_json(self.path("result.json")))
 
     def says_nearly_the_same(self, lines, others):
         """An odd shift changes the rounding of float and so the samples that are drawn. Numbers may
@@ -235,7 +235,7 @@ class FarScene(Simulated):
         for name in self.SHIFTS:
             said = self.refined(name, self.path(name), known, "-v", "3")
             self.assertNotIn("Not converged", said)
-            report = json.loads(read(self.path(name, "report.json")))
+            report = read_json(self.path(name, "report.json"))
             sparse = self.path(name, "sparse")
             models[name] = (*(self.back(name, read_places(sparse)) for read_places in (centres_of, points_of)),
                             report["rms_after_px"], [int(n) for n in re.findall(r"(\d+) iterations", said)])
@@ -250,7 +250,7 @@ class FarScene(Simulated):
 
     def refined(self, model, out, scale, *more):
         few = self.path("few", model)
-        colmap_text.copy(pathlib.Path(self.at(model, "sparse")), pathlib.Path(few), lambda number: number % 8 == 0)
+        colmap_text.copy(pathlib.Path(self.at(model, "sparse")), pathlib.Path(few), lambda number: number % 16 == 0)
         return self.succeeds("RefinePoses", "-i", few, "--lens", os.path.join(self.truth, "sparse"),
                              *self.port("water"), "-o", out, "--scale-from", scale, *more).stdout
 
@@ -294,10 +294,10 @@ class WaterSurface(Simulated):
             self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path(name), "--refractive",
                           "--fusion-mode", "1", "--resolution-level", "1", "--min-resolution", "100",
                           "--geometric-iters", "0")
-            written = json.loads(read(self.path(name, "scene_dense.housing.json")))
+            written = read_json(self.path(name, "scene_dense.housing.json"))
             for a, b in zip(written["ports"]["main"]["point_m"], surface["point_m"]):
                 self.assertAlmostEqual(a, b, delta=1e-9)
-        sides = [json.loads(read(self.path(name, "depth0000.dmap.json")))["port"] for name in ("near", "odd")]
+        sides = [read_json(self.path(name, "depth0000.dmap.json"))["port"] for name in ("near", "odd")]
         self.assertAlmostEqual(sides[0]["distance_m"], sides[1]["distance_m"], delta=1e-7)
         self.assertGreater(sides[0]["distance_m"], 0.05)
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shared by the program tests: running programs, and checking how they fail."""
 
+import json
 import os
 import re
 import resource
@@ -68,6 +69,10 @@ def read(path):
         return file.read()
 
 
+def read_json(*path):
+    return json.loads(read(os.path.join(*path)))
+
+
 def write(path, data):
     os.makedirs(os.path.dirname(path), exist_ok=True)
     with open(path, "wb" if isinstance(data, bytes) else "w") as file:
@@ -110,11 +115,16 @@ def cloud_size(ply):
     return int(re.search(rb"element vertex (\d+)", ply)[1])
 
 
+def new_folder(clean_up):
+    """A temporary folder. `clean_up`: addCleanup of a test, or addClassCleanup of a class of tests."""
+    folder = tempfile.TemporaryDirectory(prefix="axial_")
+    clean_up(folder.cleanup)
+    return os.path.realpath(folder.name)
+
+
 class ProgramTest(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="axial_")
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
+        self.folder = new_folder(self.addCleanup)
 
     def path(self, *parts):
         return os.path.join(self.folder, *parts)

@@ -9,11 +9,10 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
 import unittest.mock
 
-from programs import BIN, ProgramTest, files_below, main, read, run, write
+from programs import BIN, ProgramTest, contents, main, must, new_folder, read, read_json, run, write
 
 PROGRAM = "ReproducePaper"
 DOCUMENTS = pathlib.Path(__file__).resolve().parents[2] / "docs" / "paper" / "documents.py"
@@ -35,20 +34,13 @@ class Quick(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.output = cls.temporary.name
+        cls.output = new_folder(cls.addClassCleanup)
         cls.folder = os.path.join(cls.output, "quick")
-        result = run(PROGRAM, "all", "-o", cls.output, "--quick", timeout=1500)
-        assert result.returncode == 0, result.stderr
-        cls.said = result.stdout
+        cls.said = must(PROGRAM, "all", "-o", cls.output, "--quick", timeout=1500)
         make_documents(sys.executable, cls.folder, "--tables")
 
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
-
     def results(self, experiment):
-        content = json.loads(read(os.path.join(self.folder, experiment + ".json")))
+        content = read_json(self.folder, experiment + ".json")
         self.assertTrue(content["quick"])
         return {name: part["result"] for name, part in content["parts"].items()}
 
@@ -215,13 +207,12 @@ class Quick(unittest.TestCase):
         self.assertEqual(os.listdir(os.path.join(self.folder, "work")), [])
 
     def test_figures_are_drawn(self):
-        with tempfile.TemporaryDirectory(prefix="axial_") as folder:
-            for name in os.listdir(self.folder):
-                if name.endswith(".json"):
-                    shutil.copy(os.path.join(self.folder, name), folder)
-            make_documents(python_with_matplotlib(), folder)
-            figures = {name: read(os.path.join(folder, name)) for name in os.listdir(folder)
-                       if name.endswith((".png", ".jpg"))}
+        folder = new_folder(self.addCleanup)
+        for name in os.listdir(self.folder):
+            if name.endswith(".json"):
+                shutil.copy(os.path.join(self.folder, name), folder)
+        make_documents(python_with_matplotlib(), folder)
+        figures = {name: data for name, data in contents(folder).items() if name.endswith((".png", ".jpg"))}
         self.assertEqual(len(figures), 1 + 1 + 2 + 5 + 3 + 1)
         for name, content in figures.items():
             self.assertTrue(content.startswith((b"\x89PNG", b"\xff\xd8\xff")), name)
@@ -237,11 +228,9 @@ class Quick(unittest.TestCase):
 
     def test_nothing_finished_is_computed_again(self):
         """Measured times never repeat, so equal files show that nothing was measured again."""
-        before = {name: read(os.path.join(self.folder, name)) for name in files_below(self.folder)}
-        self.assertEqual(run(PROGRAM, "all", "-o", self.output, "--quick").returncode, 0)
-        for name, content in before.items():
-            self.assertEqual(read(os.path.join(self.folder, name)), content, name)
-        self.assertEqual(files_below(self.folder), set(before))
+        before = contents(self.folder)
+        must(PROGRAM, "all", "-o", self.output, "--quick")
+        self.assertEqual(contents(self.folder), before)
 
 
 class WithoutPoses(ProgramTest):
@@ -257,20 +246,25 @@ class WithoutPoses(ProgramTest):
         with unittest.mock.patch.dict(os.environ, PATH=folders):
             return run(program, "need", "--quick", "--part", "usual", "-o", self.path("a"))
 
-    def test_only_what_colmap_did_not_find_is_kept(self):
+    def parts(self):
+        """The files of the parts that are done."""
+        folder = self.path("a", "quick", "parts", "need")
+        return sorted(os.path.join(folder, name) for name in os.listdir(folder) if name.endswith(".json"))
+
+    def test_only_what_colmap_did_not_find_is_kept_for_the_programs_that_made_it(self):
         said = "echo ERROR: failed to create sparse model"
         for mapper, how in (("kill -9 $$", "signal 9"), ("exit 1", "exit code 1"),
                             (said + "; exit 3", "exit code 3")):
             result = self.need(mapper)
             self.assertEqual(result.returncode, 1, mapper)
             self.assertIn("colmap: " + how, result.stderr)
-        folder = self.path("a", "quick", "parts", "need")
-        self.assertEqual(os.listdir(folder), [])
-        self.assertEqual(self.need(said + "; exit 1").returncode, 0)
-        part = [name for name in os.listdir(folder) if name.endswith(".json")][0]
-        today = json.loads(read(os.path.join(folder, part)))["result"]["today"]
-        self.assertEqual(today, {"images": 0, "centre_rms": None, "as_it_lies": None,
-                                 "moved": None})
+        self.assertEqual(os.listdir(self.path("a", "quick", "parts", "need")), [])
+        for program, count in ((PROGRAM, 1), (PROGRAM, 1), (self.other_programs(AlignModel="exit 1"), 2)):
+            self.assertEqual(self.need(said + "; exit 1", program).returncode, 0)
+            self.assertEqual(len(self.parts()), count)
+        for part in self.parts():
+            self.assertEqual(read_json(part)["result"]["today"],
+                             {"images": 0, "centre_rms": None, "as_it_lies": None, "moved": None})
 
     def other_programs(self, **scripts):
         """A copy of ReproducePaper beside which `scripts` replace the programs of these names.
@@ -284,16 +278,6 @@ class WithoutPoses(ProgramTest):
             os.remove(self.path("other", name))
             self.put_script(script, "other", name)
         return self.path("other", PROGRAM)
-
-    def test_a_part_belongs_to_the_programs_that_made_it(self):
-        finds_nothing = "echo ERROR: failed to create sparse model; exit 1"
-        other = self.other_programs(AlignModel="exit 1")
-        kept = []
-        for program in (PROGRAM, PROGRAM, other):
-            self.assertEqual(self.need(finds_nothing, program).returncode, 0)
-            kept.append({name for name in os.listdir(self.path("a", "quick", "parts", "need"))
-                         if name.endswith(".json")})
-        self.assertEqual([len(names) for names in kept], [1, 1, 2])
 
     def test_another_program_repeats_its_own_step_and_not_colmaps(self):
         """COLMAP's poses are not reproducible; they are kept as long as they are valid."""
@@ -326,8 +310,7 @@ class Figure3(ProgramTest):
 
     def all_bytes(self, folder):
         """The contents of all files except the measured times."""
-        return {name: read(self.path(folder, name)) for name in files_below(self.path(folder))
-                if not name.endswith(".seconds")}
+        return {name: data for name, data in contents(self.path(folder)).items() if not name.endswith(".seconds")}
 
     def test_same_bytes_for_any_number_of_threads(self):
         for folder, threads in (("a", 1), ("b", 3)):
@@ -337,7 +320,7 @@ class Figure3(ProgramTest):
     def test_damaged_and_foreign_parts_are_computed_again(self):
         self.succeeds(PROGRAM, "figure3", "-o", self.path("a"))
         expected = self.all_bytes("a")
-        whole = json.loads(read(self.part()))
+        whole = read_json(self.part())
         for wrong in (b"", b"{}", b"[1]", read(self.part())[:100],
                       json.dumps({**whole, "inputs": {"version": 0}}).encode()):
             write(self.part(), wrong)
@@ -352,16 +335,15 @@ class Figure3(ProgramTest):
         self.assertEqual(self.all_bytes("a"), self.all_bytes("b"))
 
     def test_wrong_input(self):
-        self.refuses("'figure9' is not an experiment", PROGRAM, "figure9", "-o", self.path("a"))
-        self.refuses("no output folder", PROGRAM, "figure3")
-        self.refuses("'figure4' belongs to no option", PROGRAM, "figure3", "figure4", "-o",
-                     self.path("a"))
-        self.refuses("cannot be created", PROGRAM, "figure3", "-o", "/proc/none")
         write(self.path("file"), "")
-        self.refuses("cannot be created", PROGRAM, "figure3", "-o", self.path("file"))
-        self.refuses("no part has a name that begins", PROGRAM, "figure3", "-o", self.path("a"),
-                     "--part", "setup3")
-        self.refuses("not for all", PROGRAM, "all", "-o", self.path("a"), "--part", "setup1")
+        here = ("-o", self.path("a"))
+        self.refuses_each(
+            (PROGRAM,), ("'figure9' is not an experiment", "figure9", *here), ("no output folder", "figure3"),
+            ("'figure4' belongs to no option", "figure3", "figure4", *here),
+            ("cannot be created", "figure3", "-o", "/proc/none"),
+            ("cannot be created", "figure3", "-o", self.path("file")),
+            ("no part has a name that begins", "figure3", *here, "--part", "setup3"),
+            ("not for all", "all", *here, "--part", "setup1"))
 
     def test_help_without_an_experiment(self):
         result = run(PROGRAM)

@@ -7,10 +7,9 @@ import json
 import os
 import shutil
 import struct
-import tempfile
 
 import scenes
-from programs import BIN, ProgramTest, files_below, must, read, write
+from programs import BIN, ProgramTest, files_below, must, new_folder, read, read_json, write
 from readers import with_paths
 from tiny_scene import DISTANCE, TinyScene
 
@@ -140,9 +139,7 @@ class Simulated(ProgramTest):
     def setUpClass(cls):
         if cls.SCENE is None:
             return
-        folder = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.make(folder.name)
+        cls.make(new_folder(cls.addClassCleanup))
 
     @classmethod
     def make(cls, folder):
@@ -170,7 +167,7 @@ class Simulated(ProgramTest):
         self.succeeds("EvaluateReconstruction", "-i", file, "-m", os.path.join(self.truth, "mesh.ply"), "--cameras",
                       os.path.join(self.truth, "sparse"), *self.port(medium), "--samples", samples, "--json", report,
                       *arguments)
-        result = json.loads(read(report))
+        result = read_json(report)
         os.remove(report)
         return result
 
@@ -185,11 +182,9 @@ class Densified(Simulated):
 
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.addClassCleanup(folder.cleanup)
+        cls.shared = new_folder(cls.addClassCleanup)
         programs = [os.path.join(BIN, name) for name in ("SimulateUnderwater", "InterfaceCOLMAP", "DensifyPointCloud")]
-        scenes.made((cls.make.__qualname__, *cls.SCENE, *QUICK), programs, folder.name, cls.make)
-        cls.shared = folder.name
+        scenes.made((cls.make.__qualname__, *cls.SCENE, *QUICK), programs, cls.shared, cls.make)
         cls.truth = cls.at("truth")
 
     @classmethod

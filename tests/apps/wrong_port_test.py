@@ -8,9 +8,9 @@ import os
 import random
 import re
 
-from programs import cloud_size, files_below, grey_png, main, must, read, run, write
+from programs import cloud_size, files_below, grey_png, main, must, read, read_json, run, write
 from readers import records
-from worlds import ROUGH, Simulated
+from worlds import CLOSEUP, ROUGH, Simulated
 
 NO_SCENE = "The photographs do not seem to show the scene"
 WARNING = "Cameras and photographs do not seem to belong together"
@@ -31,7 +31,7 @@ def scaled_model(path, first, scale, every):
 
 class PortTest(Simulated):
     def housing(self, **changes):
-        housing = json.loads(read(os.path.join(self.truth, "housing.json")))
+        housing = read_json(self.truth, "housing.json")
         housing["ports"]["main"].update(changes)
         return housing
 
@@ -60,7 +60,7 @@ class PortTest(Simulated):
         return self.succeeds(*self.command(folder, "--report-file", "report.json", *arguments)).stdout
 
     def report(self, folder):
-        return json.loads(read(os.path.join(folder, "report.json")))["agreement"]
+        return read_json(folder, "report.json")["agreement"]
 
     def warns(self, name, *expected, **wrong):
         folder = self.scene(name, **wrong)
@@ -84,7 +84,7 @@ class PortTest(Simulated):
 
 
 class FlatPort(PortTest):
-    SCENE = ("--preset", "closeup", *ROUGH)
+    SCENE = CLOSEUP
 
     def test_what_is_right(self):
         self.passes("water", housing=self.housing())
@@ -152,7 +152,7 @@ class FlatPort(PortTest):
 class Noise(PortTest):
     """With few pixels per sparse point, maps of photographs without content stay at the sparse
     points and agree with each other."""
-    SCENE = ("--preset", "closeup", *ROUGH)
+    SCENE = CLOSEUP
     SMALL = ("--resolution-level", "1", "--min-resolution", "100")
 
     def test_photographs_of_noise(self):
