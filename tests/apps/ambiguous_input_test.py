@@ -59,18 +59,6 @@ class Import(ProgramTest):
         self.assertNotIn("differ", self.imported(*self.port("port.json", 0.02)))
         self.assertIn("are used; the ports of the model in", self.imported(*self.port("port.json", 0.03)))
 
-    def test_nothing_that_is_read_is_written_over(self):
-        """Under any name: its own, that of a link, and that of a file written beside the scene."""
-        sparse, images = self.path("colmap", "sparse"), self.path("colmap", "images")
-        port = self.port("lake.housing.json", 0.02)
-        os.symlink(os.path.join(images, "0001.png"), self.path("symbolic.mvs"))
-        os.link(os.path.join(sparse, "points3D.txt"), self.path("hard.mvs"))
-        outputs = [os.path.join(sparse, name + ".txt") for name in ("cameras", "images", "points3D")]
-        outputs += [os.path.join(images, "0000.png"), self.path("symbolic.mvs"),
-                    self.path("hard.mvs"), self.path("lake.mvs")]
-        for output in outputs:
-            self.refuses_and_keeps("--output-file " + output.replace("lake.mvs", "lake.housing.json"),
-                                   *self.command(*port, output=output))
 
 
 class ManyCameras(ProgramTest):

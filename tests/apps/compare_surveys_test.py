@@ -351,20 +351,6 @@ class WrongInput(CompareTest):
         write(self.before, ply([(0, 0, 1)] * 3, [(0, 1, 2)]))
         self.refuses_and_keeps("a.ply: the mesh has no area", *self.compare())
 
-    def test_an_input_is_not_overwritten(self):
-        write(self.path("work", "reef.change.difference.tif"), read(self.after))
-        self.refuses_and_keeps("--output-file", "CompareSurveys", "-w", self.path("work"), "-i", "a.ply",
-                               "--other", "reef.change.difference.tif", "-o", "reef")
-
-    def test_a_scene_is_not_overwritten(self):
-        scene = self.above("reef.change.json", 2, 0.7, 0.9)
-        self.refuses_each(self.compare("--up", "0,0,1"), *(("--output-file", option, scene)
-                                                           for option in ("--scene", "--other-scene")))
-
-    def test_a_full_disk_leaves_the_old_files(self):
-        self.succeeds(*self.compare())
-        said = self.refuses_and_keeps("reef.change.", *self.compare("--gsd", "0.001"), file_size_limit=100_000)
-        self.assertRegex(said.stderr, r"reef\.change\.\w+\.tif: cannot be written: File too large\n$")
 
 
 if __name__ == "__main__":

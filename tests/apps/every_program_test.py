@@ -6,9 +6,8 @@ import fcntl
 import math
 import os
 import shutil
-import subprocess
 
-from programs import BIN, contents, files_below, grey_png, main, read, run, write
+from programs import BIN, contents, files_below, grey_png, main, read, run, without_streams, write
 from tiny_scene import DENSIFY
 from worlds import Wall, cloud, matrix_text, ply, wall
 
@@ -51,27 +50,51 @@ class Programs(Wall):
                  self.path("work", "out.json"))]
 
 
-class SameBytes(Programs):
-    def without(self, closed, *command):
-        """Runs a program without these standard streams. Returns the files that it makes, and removes them."""
-        before = files_below(self.work)
-        streams = " ".join(f"{descriptor}>&-" for descriptor in closed)
-        ended = subprocess.run(["bash", "-c", f'exec "$@" {streams}', "bash", os.path.join(BIN, command[0]),
-                                *map(str, command[1:])], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60)
-        self.assertEqual(ended.returncode, 0, (command, closed, ended.stderr))
+class Results(Programs):
+    """What a program writes into the folder of the scene."""
+
+    def taken_away(self, before):
+        """The contents of the files that are not in `before`, which are removed."""
         found = {name: data for name, data in contents(self.work).items() if name not in before}
         for name in found:
             os.remove(self.path("work", name))
         shutil.rmtree(self.path("work", "out"), ignore_errors=True)
         return found
 
+    def run_without(self, closed, *command):
+        """Runs a program without these standard streams. Returns its exit code and its files."""
+        before = files_below(self.work)
+        ended = without_streams(closed, os.path.join(BIN, command[0]), *command[1:])
+        return ended.returncode, self.taken_away(before)
+
+
+class SameBytes(Results):
     def test_for_any_number_of_threads_and_without_streams(self):
         for command in self.commands():
             with self.subTest(command=command):
-                expected = self.without((), *command, "--max-threads", 2)
-                self.assertTrue(expected)
+                expected = self.run_without((), *command, "--max-threads", 2)
+                self.assertEqual(expected[0], 0)
+                self.assertTrue(expected[1])
                 for closed, threads in (((1,), 1), ((0, 1, 2), 2)):
-                    self.assertEqual(self.without(closed, *command, "--max-threads", threads), expected)
+                    self.assertEqual(self.run_without(closed, *command, "--max-threads", threads), expected)
+                self.assertEqual(self.run_without((0, 1, 2), *command, "--no-such-option", 1), (1, {}))
+
+
+class FullDisk(Results):
+    def test_old_files_stay_and_new_ones_are_complete_or_absent(self):
+        for command in self.commands():
+            with self.subTest(command=command):
+                before = files_below(self.work)
+                made, _ = self.new_files(self.work, *command)
+                said = self.refuses_and_keeps("annot be written", *command,
+                                              file_size_limit=min(map(len, made.values())) - 1).stderr
+                self.assertEqual(".tmp" in said, command[0] == "RefineMesh", said)  # its state is named twice
+                self.taken_away(before)
+                ended = run(*command, file_size_limit=max(map(len, made.values())) - 1)
+                self.assertEqual((ended.returncode, ended.stderr.count("\n")), (1, 1), ended.stderr)
+                self.assertIn("annot be written", ended.stderr)
+                for name, data in self.taken_away(before).items():
+                    self.assertEqual(data, made[name], name)
 
 
 class CommandLine(Programs):

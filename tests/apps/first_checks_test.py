@@ -136,7 +136,8 @@ class Checked(ProgramTest):
         write(self.path("housing.json"), housing_with(FLAT))
 
     def check(self, *more, housing="housing.json", lens="lens.txt"):
-        return subprocess.run(reconstruct_command(*more, lens=lens, housing=housing), cwd=self.folder, capture_output=True, text=True, timeout=60)
+        return subprocess.run(reconstruct_command(*more, lens=lens, housing=housing), cwd=self.folder,
+                              capture_output=True, text=True, timeout=60)
 
     def refused(self, *more, **files):
         """The line of a run that is refused, with and without --check, before it writes anything."""

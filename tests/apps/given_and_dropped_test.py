@@ -79,26 +79,6 @@ class Photographs(Tiny):
 class Clouds(Tiny):
     """The cloud given with -p, exports, and the files written beside them."""
 
-    def test_inputs_are_not_written_over(self):
-        self.densify()
-        folder = self.path("near")
-        os.rename(os.path.join(folder, "scene_dense.ply"), os.path.join(folder, "given.ply"))
-        self.densify("--output-view-neighbors-file", "list.txt")
-        write(os.path.join(folder, "list.mvs"), read(os.path.join(folder, "list.txt")))
-        write(os.path.join(folder, "config.mvs"), "Min Views = 2\n")
-        os.link(os.path.join(folder, "list.txt"), os.path.join(folder, "linked.mvs"))
-        command = self.command()
-        for option, given, out in (("-p", "given.ply", "given.mvs"),
-                                   ("--view-neighbors-file", "list.mvs", "list.mvs"),
-                                   ("--view-neighbors-file", "list.txt", "linked.mvs"),
-                                   ("--dense-config-file", "config.mvs", "config.mvs")):
-            self.refuses_and_keeps("--output-file", *command, option, given, "-o", out)
-        self.refuses("--output-view-neighbors-file", *command, "-p", "given.ply",
-                     "--output-view-neighbors-file", "given.ply")
-        os.rename(os.path.join(folder, "given.ply"), os.path.join(folder, "x_filtered.ply"))
-        self.refuses("--output-file", *command, "-p", "x_filtered.ply", "-o", "x.mvs",
-                     "--filter-point-cloud", "-1")
-
     def test_exports_of_a_far_scene_say_their_offset(self):
         self.tiny("far", FAR)
         for arguments, suffix in ((("--filter-point-cloud", "-1000"), "_filtered"),

@@ -146,7 +146,6 @@ class Mesh(Densified):
             ("not built yet", "--split-max-area", "3"), ("--decimate 1.5", "--decimate", "1.5"),
             ("--export-type stl", "--export-type", "stl"), ("no.ply", "-p", "no.ply"),
             ("--max-memory", "--max-memory", "1"), ("housing", "--refractive"),
-            ("is an input", "-o", "scene_dense.ply"),
             ("--output-file new/: must be the name of a file", "-o", "new/"))
 
     def test_wrong_clouds_are_refused(self):

@@ -9,7 +9,7 @@ import subprocess
 import time
 
 from every_program_test import Programs
-from programs import BIN, contents, files_below, main, read, write
+from programs import BIN, files_below, main, read, write
 from readers import Glb, Ply
 from tiny_scene import mvs
 from worlds import housing, moved, ply, wall
@@ -46,23 +46,6 @@ class FilesOfTheScene(Outputs):
             self.assertEqual(made, {"scene.glb"})
             self.removes(made)
 
-    def test_what_belongs_to_a_scene_is_never_an_output(self):
-        for name in ("scene.housing.json", "scene.lenses.json", "scene.geo.json", "depth0001.dmap"):
-            shutil.copyfile(self.cloud, self.path("work", name))
-        for program in MESHES:
-            before = contents(self.work)
-            for name in ("scene.geo.json", "scene.lenses.json", "scene.housing.json"):
-                os.remove(self.path("work", name))
-            self.refuses_and_keeps("scene.ply: is ", *self.program(program, "-o", "scene.ply"))
-            for name, data in before.items():
-                write(self.path("work", name), data)
-        for name in ("scene.housing.json", "scene.lenses.json", "scene.geo.json"):
-            self.refuses_and_keeps(name + ": is ", *self.program("TransformScene", "-t", "t.txt",
-                                                                 "--transform-out", name))
-            os.remove(self.path("work", name))
-        for name in ("scene.ply", "depth0001.dmap", self.images[1]):
-            self.refuses_and_keeps(name + ": is ", *self.program("TransformScene", "-t", "t.txt",
-                                                                 "--transform-out", name))
 
 
 class OneRule(Outputs):

@@ -5,15 +5,68 @@ import os
 import shutil
 
 import tiny_scene
+from every_program_test import Programs
 from programs import grey_png, main, read, write
-from tiny_scene import TinyScene
 from worlds import TRIANGLE, housing
 
 MODEL = ("cameras", "images", "points3D")
 
 
-class Overwriting(TinyScene):
+class Overwriting(Programs):
     """An input is not overwritten under any of its names: its path, a symbolic or a hard link."""
+
+    def test_names_that_follow_from_that_of_the_output(self):
+        """An input in the folder of the scene has the name of a file that the program would write."""
+        compare = ("CompareSurveys", "-w", self.work, "-o", "reef", "-i", "mesh.ply", "--other")
+        densify, export = self.densify(), ("--output-view-neighbors-file", "given.ply")
+        write(self.path("work", "pairs.txt"), "0 1\n")
+        write(self.path("work", "dense.ini"), "Min Views = 2\n")
+        for given, name, *command in (
+                ("mesh.ply", "mesh.dem.tif", *self.program("MapSurface", "-o", "mesh", mesh="mesh.dem.tif")),
+                ("mesh.ply", "reef.change.difference.tif", *compare, "reef.change.difference.tif"),
+                *(("scene.mvs", "reef.change.json", *compare, "mesh.ply", option, "reef.change.json") for option in ("--scene", "--other-scene")),
+                ("mesh.ply", "scene_texture.ply", *self.program("TextureMesh", mesh="scene_texture.ply")),
+                ("mesh.ply", "out.tile2-3.ply",
+                 *self.program("TextureMesh", "-o", "out", "--tiles", "3", mesh="out.tile2-3.ply")),
+                (self.images[0], "out0.png", *self.program("TextureMesh", "-o", "out")),
+                ("mesh.ply", "fine.ply", *self.program("RefineMesh", "-o", "fine.ply", mesh="fine.ply")),
+                ("scene.ply", "dense.ply", *self.program("ReconstructMesh", "-p", "dense.ply", "-o", "dense.ply",
+                                                         mesh=None)),
+                ("scene.ply", "moved.ply", *self.program("TransformScene", "-t", "t.txt", "-p", "moved.ply", "-o",
+                                                         "moved.mvs")),
+                ("scene.ply", "given.ply", *densify, "-p", "given.ply", "-o", "given.mvs"),
+                ("scene.ply", "given.ply", *densify, "-p", "given.ply", *export),
+                ("scene.ply", "x_filtered.ply", *densify, "-p", "x_filtered.ply", "-o", "x.mvs", "--filter-point-cloud",
+                 "-1"),
+                ("pairs.txt", "list.mvs", *densify, "--view-neighbors-file", "list.mvs", "-o", "list.mvs"),
+                ("dense.ini", "config.mvs", *densify, "--dense-config-file", "config.mvs", "-o", "config.mvs")):
+            os.link(self.path("work", given), self.path("work", name))
+            option = export[0] if command[-2:] == list(export) else "--output-file"
+            with self.subTest(command=command):
+                self.refuses_and_keeps(option, *command)
+            os.remove(self.path("work", name))
+
+    def test_what_belongs_to_a_scene_is_never_an_output(self):
+        sides = ("scene.housing.json", "scene.lenses.json", "scene.geo.json")
+        for name in (*sides, "depth0001.dmap"):
+            shutil.copyfile(self.cloud, self.path("work", name))
+        move = self.program("TransformScene", "-t", "t.txt", "--transform-out")
+        for name in sides:
+            self.refuses_and_keeps(name + ": is ", *move, name)
+            os.remove(self.path("work", name))
+        for name in ("scene.ply", "depth0001.dmap", self.images[1]):
+            self.refuses_and_keeps(name + ": is ", *move, name)
+        for program in ("ReconstructMesh", "RefineMesh", "TextureMesh"):
+            self.refuses_and_keeps("scene.ply: is ", *self.program(program, "-o", "scene.ply"))
+
+    def test_an_import(self):
+        """The files of the model, the photographs, and the housing that lies beside the scene."""
+        sparse, port = self.path("colmap", "sparse"), self.path("lake.housing.json")
+        write(port, housing())
+        command = ("InterfaceCOLMAP", "-i", self.path("colmap"), "--housing", port)
+        self.refuses_targets(command, ("--output-file",), (
+            *(os.path.join(sparse, name + ".txt") for name in MODEL), self.images[0]))
+        self.refuses_and_keeps(f"--output-file {port}: is ", *command, "-o", self.path("lake.mvs"))
 
     def refuses_targets(self, command, options, targets):
         self.refuses_each(command, *((f"{option} {target}: is ", option, target)

@@ -212,17 +212,6 @@ class Refusals(Exports):
         write(scene, with_paths(read(scene), lambda path: names[int(path[-8:-4])]))
         self.refused("a.mask.png", work, "--pinhole-export", "pinholes")
 
-    def test_a_full_disk_leaves_nothing(self):
-        work = self.copy("work")
-        before = contents(work)
-        largest = max(len(data) for name, data in before.items() if not name.endswith(".ply"))
-        result = run(*self.command(work, "--pinhole-export", "pinholes", "--fusion-mode", "-1"),
-                     file_size_limit=10000)
-        self.assertGreater(largest, 10000)
-        self.assertEqual(result.returncode, 1)
-        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
-        self.assertFalse(os.path.exists(os.path.join(work, "pinholes")))
-        self.assertEqual([n for n in files_below(work) if ".tmp" in n], [])
 
 
 class Taken(Exports):

@@ -4,7 +4,7 @@
 import os
 
 from programs import read, write
-from readers import Ply, added, centres_of, image_lines, points_of, records, rotated
+from readers import Ply, added, image_lines, records, rotated
 from worlds import binary_mesh
 
 FAR = (534000.0, 3378500.0, 30.0)  # multiples of 10, as a geo_offset is

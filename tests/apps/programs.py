@@ -52,6 +52,13 @@ def must(program, *arguments, **options):
     return result.stdout
 
 
+def without_streams(closed, *command, **options):
+    """A command that ended, whose standard streams of these numbers were closed."""
+    streams = " ".join(f"{descriptor}>&-" for descriptor in closed)
+    return subprocess.run(["bash", "-c", f'exec "$@" {streams}', "bash", *map(str, command)], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, timeout=60, **options)
+
+
 def dead_process():
     """The id of a process that has ended."""
     process = subprocess.Popen(["true"])

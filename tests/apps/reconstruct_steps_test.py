@@ -7,10 +7,9 @@ import pathlib
 import shlex
 import shutil
 import signal
-import subprocess
 
 from pipeline_folder import reconstruct_command
-from programs import main
+from programs import main, without_streams
 from reconstruct_test import STEPS
 from stand_ins import StandIns
 
@@ -38,8 +37,7 @@ class WithStandIns(StandIns):
         self.succeeds()
 
     def test_prints_nothing_into_files_where_output_is_closed(self):
-        command = ["bash", "-c", 'exec "$@" 0>&- 1>&- 2>&-', "bash", *reconstruct_command(programs=".")]
-        ended = subprocess.run(command, cwd=self.folder, timeout=60)
+        ended = without_streams((0, 1, 2), *reconstruct_command(programs="."), cwd=self.folder)
         self.assertEqual(ended.returncode, 0)
         self.assertEqual((self.folder / "out" / "lock").read_bytes(), b"")
         self.assertTrue((self.folder / "out" / "report.md").read_text().startswith("# Recon"))

@@ -89,7 +89,7 @@ class Refined(Densified):
         self.refuses_and_keeps("wrong.ply: no camera of", *command)
         self.refuses_each(command, ("--scale-step 1.1", "--scale-step", "1.1"),
                           ("--refractive", "--refractive", "--camera-model", "pinhole"),
-                          ("housing file not found", "--refractive"), ("--output-file", "-o", "wrong.ply"),
+                          ("housing file not found", "--refractive"),
                           ("--output-file ./: must be the name of a file", "-o", "./"))
 
 

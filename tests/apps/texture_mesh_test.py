@@ -124,12 +124,6 @@ class Tiles(TextureTest):
                                             for value in ("0", "1001")),
                           *(("--tiles", "--tiles", value) for value in ("-1", "x", "2.5")))
 
-    def test_inputs_are_not_overwritten(self):
-        os.rename(self.mesh, self.path("work", "out.tile2-3.ply"))
-        self.refuses_and_keeps("--output-file",
-                               *self.texture("-m", "out.tile2-3.ply", "-o", "out", "--tiles", "3"))
-        self.succeeds(*self.texture("-m", "out.tile2-3.ply", "-o", "out", "--tiles", "2"))
-
     def test_outputs_that_cannot_be_written(self):
         os.mkdir(self.path("work", "scene_texture.tile2-3.ply"))
         self.refuses_and_keeps("scene_texture.tile2-3.ply", *self.texture("--tiles", "3"))
@@ -194,12 +188,6 @@ class WrongInput(TextureTest):
                                     "--global-seam-leveling", "1", "--local-seam-leveling", "0",
                                     "--texture-size-multiple", "16", "--empty-color", "255"))
 
-    def test_inputs_are_not_overwritten(self):
-        os.rename(self.mesh, self.path("work", "scene_texture.ply"))
-        self.refuses_and_keeps("--output-file", *self.texture("-m", "scene_texture.ply"))
-        os.link(self.images[0], self.path("work", "out0.png"))
-        self.refuses_and_keeps("--output-file", *self.texture("-m", "scene_texture.ply", "-o", "out"))
-        self.succeeds(*self.texture("-m", "scene_texture.ply", "-o", "other"))
 
 
 if __name__ == "__main__":

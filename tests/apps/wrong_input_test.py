@@ -123,8 +123,6 @@ class InterfaceColmap(ProgramTest):
         for output in ("/proc/scene.mvs", self.path("a_file", "scene.mvs")):
             self.refuses("", "InterfaceCOLMAP", "-i", self.path("colmap"), "-o", output)
 
-    def test_full_disk(self):
-        self.refuses_import("scene.mvs", file_size_limit=100)
 
 
 class Densify(TinyScene):
@@ -205,9 +203,6 @@ class Densify(TinyScene):
             self.assertEqual(result.stderr.count("\n"), 1, said)
             self.assertIn("scene_dense", result.stderr, said)
         self.refuses("", *DENSIFY, "-i", self.scene, "-w", "/proc")
-
-    def test_full_disk(self):
-        self.refuses_scene("dmap", file_size_limit=5000)
 
     def test_too_little_memory(self):
         for least in ("1", "30"):
