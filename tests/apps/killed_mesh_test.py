@@ -8,13 +8,20 @@ import signal
 import subprocess
 import time
 
-from programs import BIN, contents, dead_process, files_below, main, read, write
+from programs import BIN, contents, dead_process, files_below, main, must, read, write
 from worlds import Densified
 
 REFINE = ("--resolution-level", "1", "--min-resolution", "100", "-o", "refined.ply")
 
 
 class Killed(Densified):
+    """The folder under water also holds the mesh scene_dense_mesh.ply."""
+
+    @classmethod
+    def make(cls, folder):
+        super().make(folder)
+        must("ReconstructMesh", "-i", "scene_dense.mvs", "-w", cls.at("water"), "-d", "4")
+
     def start(self, folder, program, *arguments):
         return subprocess.Popen([os.path.join(BIN, program), "-i", "scene_dense.mvs", "-w", folder,
                                  *arguments], stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
@@ -25,10 +32,8 @@ class Killed(Densified):
         said = self.succeeds(program, "-i", "scene_dense.mvs", "-w", folder, *arguments).stdout
         return said, time.monotonic() - begin
 
-    def with_mesh(self):
-        """A folder with the mesh scene_dense_mesh.ply, and another one with the same content."""
-        folder, other = self.copy("water"), self.path("other")
-        self.finish(folder, "ReconstructMesh", "-d", "4")
+    def two_copies(self, *leave_out):
+        folder, other = self.copy("water", *leave_out), self.path("other")
         shutil.rmtree(other, ignore_errors=True)
         shutil.copytree(folder, other)
         return folder, other
@@ -77,29 +82,24 @@ class Killed(Densified):
         self.assertEqual(contents(folder), expected)
 
     def test_reconstruct(self):
-        folder, other = self.with_mesh()
-        for one in (folder, other):
-            os.remove(os.path.join(one, "scene_dense_mesh.ply"))
-        self.check(folder, other, "ReconstructMesh")
+        self.check(*self.two_copies("_mesh.ply"), "ReconstructMesh")
 
     def test_texture(self):
-        folder, other = self.with_mesh()
-        self.check(folder, other, "TextureMesh", "-m", "scene_dense_mesh.ply", "--export-type",
+        self.check(*self.two_copies(), "TextureMesh", "-m", "scene_dense_mesh.ply", "--export-type",
                    "ply,glb", "--max-texture-size", "256")
 
     def test_map(self):
-        folder, other = self.with_mesh()
+        folder, other = self.two_copies()
         for name in ("dem", "ortho", "views", "sigma"):  # the blocks of a map, as a killed process leaves them
             dead = dead_process()
             write(os.path.join(folder, f"map.{name}.{dead}.tmp.blocks.{dead}.tmp.tif"), b"half")
         self.check(folder, other, "MapSurface", "-m", "scene_dense_mesh.ply", "-o", "map")
 
     def test_refine(self):
-        folder, other = self.with_mesh()
-        self.check(folder, other, "RefineMesh", "-m", "scene_dense_mesh.ply", *REFINE)
+        self.check(*self.two_copies(), "RefineMesh", "-m", "scene_dense_mesh.ply", *REFINE)
 
     def test_refine_goes_on_after_the_last_resolution_that_is_done(self):
-        folder, other = self.with_mesh()
+        folder, other = self.two_copies()
         command = ("RefineMesh", "-m", "scene_dense_mesh.ply", *REFINE)
         self.finish(other, *command)
         state = os.path.join(folder, "refined.ply.state")

@@ -24,7 +24,8 @@ class Overwriting(Programs):
         for given, name, *command in (
                 ("mesh.ply", "mesh.dem.tif", *self.program("MapSurface", "-o", "mesh", mesh="mesh.dem.tif")),
                 ("mesh.ply", "reef.change.difference.tif", *compare, "reef.change.difference.tif"),
-                *(("scene.mvs", "reef.change.json", *compare, "mesh.ply", option, "reef.change.json") for option in ("--scene", "--other-scene")),
+                ("scene.mvs", "reef.change.json", *compare, "mesh.ply", "--scene", "reef.change.json"),
+                ("scene.mvs", "reef.change.json", *compare, "mesh.ply", "--other-scene", "reef.change.json"),
                 ("mesh.ply", "scene_texture.ply", *self.program("TextureMesh", mesh="scene_texture.ply")),
                 ("mesh.ply", "out.tile2-3.ply",
                  *self.program("TextureMesh", "-o", "out", "--tiles", "3", mesh="out.tile2-3.ply")),

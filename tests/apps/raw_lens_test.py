@@ -57,13 +57,6 @@ class OpencvLens(LensTest):
         self.assertIn("scene.lenses.json: file not found", ignored)
         self.assertGreater(self.errors("scene")[0], 3 * obeyed)
 
-    def test_the_same_bytes_for_any_number_of_threads(self):
-        for threads in ("1", "2"):
-            self.import_scene("water", threads)
-            self.densify(threads, "--refractive", "--max-threads", threads, *QUICK)
-        for name in ("scene_dense.ply", "depth0002.dmap"):
-            self.assertEqual(read(self.path("1", name)), read(self.path("2", name)))
-
     def test_straight_lenses_behind_a_port_are_said_to_be_so(self):
         self.import_scene("water", "straight", "--undistort", "1")
         self.assertIn('"default": "none"', read(self.path("straight", "scene.lenses.json")).decode())

@@ -152,8 +152,8 @@ class Simulated(ProgramTest):
         return os.path.join(cls.shared, *names)
 
     @classmethod
-    def port(cls, medium):
-        return ("--housing", os.path.join(cls.truth, "housing.json")) if medium == "water" else ()
+    def port(cls, medium, folder=None):
+        return ("--housing", os.path.join(folder or cls.truth, "housing.json")) if medium == "water" else ()
 
     @classmethod
     def imported(cls, scene, medium, *arguments, model=None, port=None):
@@ -161,12 +161,12 @@ class Simulated(ProgramTest):
         return must("InterfaceCOLMAP", "-i", model or cls.truth, "--image-folder", os.path.join(cls.truth, medium),
                     "-o", scene, *(cls.port(medium) if port is None else port), *arguments)
 
-    def evaluated(self, medium, file, *arguments, samples=20000):
-        """The report on a cloud or mesh against the true surface."""
+    def evaluated(self, medium, file, *arguments, samples=20000, seen_from=None):
+        """The report on a cloud or mesh against the true surface. `seen_from`: the folder of the cameras (truth)."""
         report = self.path("report.json")
         self.succeeds("EvaluateReconstruction", "-i", file, "-m", os.path.join(self.truth, "mesh.ply"), "--cameras",
-                      os.path.join(self.truth, "sparse"), *self.port(medium), "--samples", samples, "--json", report,
-                      *arguments)
+                      os.path.join(seen_from or self.truth, "sparse"), *self.port(medium, seen_from), "--samples",
+                      samples, "--json", report, *arguments)
         result = read_json(report)
         os.remove(report)
         return result
@@ -182,9 +182,10 @@ class Densified(Simulated):
 
     @classmethod
     def setUpClass(cls):
-        cls.shared = new_folder(cls.addClassCleanup)
+        folder = new_folder(cls.addClassCleanup)
         programs = [os.path.join(BIN, name) for name in ("SimulateUnderwater", "InterfaceCOLMAP", "DensifyPointCloud")]
-        scenes.made((cls.make.__qualname__, *cls.SCENE, *QUICK), programs, cls.shared, cls.make)
+        scenes.made((cls.make.__qualname__, *cls.SCENE, *QUICK), programs, folder, cls.make)
+        cls.shared = folder
         cls.truth = cls.at("truth")
 
     @classmethod
