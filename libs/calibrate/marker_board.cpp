@@ -8,42 +8,18 @@
 #include <limits>
 #include <opencv2/aruco/charuco.hpp>
 #include <opencv2/imgproc.hpp>
-#include <string_view>
-#include <utility>
 
 #include "base/error.h"
+#include "targets/dictionary.h"
 
 namespace axial::calibrate {
 namespace {
 
 using cv::aruco::CharucoBoard;
 
-constexpr std::array<std::pair<std::string_view, int>, 21> kDictionaries{
-    {{"4X4_50", cv::aruco::DICT_4X4_50},
-     {"4X4_100", cv::aruco::DICT_4X4_100},
-     {"4X4_250", cv::aruco::DICT_4X4_250},
-     {"4X4_1000", cv::aruco::DICT_4X4_1000},
-     {"5X5_50", cv::aruco::DICT_5X5_50},
-     {"5X5_100", cv::aruco::DICT_5X5_100},
-     {"5X5_250", cv::aruco::DICT_5X5_250},
-     {"5X5_1000", cv::aruco::DICT_5X5_1000},
-     {"6X6_50", cv::aruco::DICT_6X6_50},
-     {"6X6_100", cv::aruco::DICT_6X6_100},
-     {"6X6_250", cv::aruco::DICT_6X6_250},
-     {"6X6_1000", cv::aruco::DICT_6X6_1000},
-     {"7X7_50", cv::aruco::DICT_7X7_50},
-     {"7X7_100", cv::aruco::DICT_7X7_100},
-     {"7X7_250", cv::aruco::DICT_7X7_250},
-     {"7X7_1000", cv::aruco::DICT_7X7_1000},
-     {"ARUCO_ORIGINAL", cv::aruco::DICT_ARUCO_ORIGINAL},
-     {"APRILTAG_16h5", cv::aruco::DICT_APRILTAG_16h5},
-     {"APRILTAG_25h9", cv::aruco::DICT_APRILTAG_25h9},
-     {"APRILTAG_36h10", cv::aruco::DICT_APRILTAG_36h10},
-     {"APRILTAG_36h11", cv::aruco::DICT_APRILTAG_36h11}}};
-
 cv::Ptr<cv::aruco::Dictionary> dictionary_of(const Board& board, const std::string& where) {
-  for (const auto& [name, number] : kDictionaries)
-    if (name == board.dictionary) return cv::aruco::getPredefinedDictionary(number);
+  if (const auto number = targets::dictionary_number(board.dictionary))
+    return targets::dictionary(*number);
   fail("{}: '{}' is not a dictionary of markers of OpenCV (4X4_50, APRILTAG_36h11, ...)", where,
        board.dictionary);
 }

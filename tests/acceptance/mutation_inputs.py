@@ -93,6 +93,8 @@ PROGRAMS = {program.name: program for program in (
             (*BOARDS[:2], "board/lens.txt", "board/start.json"), BOARDS,
             may_name=("board",)),
     Program("ExtractFrames", ("-i", "clip.avi", "-o", "out", "--json", "out.json"), ("clip.avi",)),
+    Program("FindTargets", ("-i", "board/photos", "-o", "out.json", "--families", "circular12,4X4_50"), BOARDS[:1],
+            may_name=("board",)),
     Program("ReproducePaper", ("figure3", "--quick", "-o", "paper"),
             ("paper/quick/figure3.json", "ReproducePaper.cfg"), kept_on_error=r"paper/.*",
             may_name=("figure3",)),

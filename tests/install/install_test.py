@@ -15,7 +15,7 @@ import unittest
 
 BUILD, SOURCE, VERSION = sys.argv[1:4]
 PROGRAMS = ["AlignModel", "CalibrateHousing", "CompareSurveys", "DensifyPointCloud",
-            "EvaluateReconstruction", "ExtractFrames", "InterfaceCOLMAP", "MapSurface", "ReconstructMesh",
+            "EvaluateReconstruction", "ExtractFrames", "FindTargets", "InterfaceCOLMAP", "MapSurface", "ReconstructMesh",
             "RefineMesh", "RefinePoses", "ReproducePaper", "SimulateUnderwater", "TextureMesh", "TransformScene",
             "ViewScene"]
 

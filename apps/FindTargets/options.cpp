@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "options.h"
+
+#include "base/error.h"
+#include "base/parse_number.h"
+#include "base/same_file.h"
+#include "base/split.h"
+#include "base/version.h"
+
+namespace axial::apps {
+namespace {
+
+constexpr const char* kFamilies = "circular12,APRILTAG_36h11";
+
+template <class T>
+T number_in(std::string_view word, const char* option, const std::string& text) {
+  const auto number = parse_number<T>(word);
+  if (!number) fail("--{} {}: '{}' is not a number", option, text, word);
+  return *number;
+}
+
+// "1-4,9": numbers and ranges of numbers.
+std::vector<std::size_t> numbers_of(const std::string& text) {
+  constexpr std::size_t kMost = 10000;
+  std::vector<std::size_t> numbers;
+  for (const std::string_view word : split(text, ',')) {
+    const auto ends = split(word, '-');
+    if (ends.empty() || ends.size() > 2) fail("--plates {}: '{}' is not a range", text, word);
+    const auto first = number_in<std::size_t>(ends.front(), "plates", text);
+    const auto last = number_in<std::size_t>(ends.back(), "plates", text);
+    if (last < first || last - first > kMost) fail("--plates {}: '{}' is not a range", text, word);
+    for (std::size_t number = first; number <= last; ++number) numbers.push_back(number);
+  }
+  return numbers;
+}
+
+// "1,2,0.5": two targets and a length; several bars are separated by semicolons.
+std::vector<Bar> bars_of(const std::string& text) {
+  std::vector<Bar> bars;
+  for (const std::string_view bar : split(text, ';')) {
+    const auto words = split(bar, ',');
+    if (words.size() != 3) fail("--bars {}: '{}' is not TARGET,TARGET,LENGTH", text, bar);
+    bars.push_back({number_in<std::size_t>(words[0], "bars", text),
+                    number_in<std::size_t>(words[1], "bars", text),
+                    number_in<double>(words[2], "bars", text)});
+    if (!(bars.back().length > 0 && bars.back().length <= 100))
+      fail("--bars {}: the length {} m must be above 0 and at most 100", text, words[2]);
+  }
+  return bars;
+}
+
+void declare(OptionList& list, Options& options) {
+  options.families = targets::parse_families(kFamilies);
+  list.add("input-file,i", &options.input,
+           "photographs: a folder, with its subfolders, or a file; may be given several times")
+      .add("output-file,o", &options.output,
+           "file to write: targets with image, x, y and sigma [px] (.json)")
+      .output_file()
+      .add_text_with_default(
+          "families", kFamilies,
+          [&](const std::string& text) { options.families = targets::parse_families(text); },
+          "targets to find, at most one of each kind: circular12, circular14, circular16 or "
+          "circular20; a dictionary of OpenCV's markers (APRILTAG_36h11, 4X4_50, ...)")
+      .add("pictures", &options.pictures, "also write a picture of each target to this folder")
+      .output_folder()
+      .add("print", &options.print,
+           "draw plates and bars to scale into this folder (.svg), and stop")
+      .output_folder()
+      .add_text(
+          "plates", [&](const std::string& text) { options.plates = numbers_of(text); },
+          "numbers of the plates to draw: 1-4,9")
+      .add_text(
+          "bars", [&](const std::string& text) { options.bars = bars_of(text); },
+          "scale bars to draw, with the distance of the centres [m]: 1,2,0.5;3,4,0.5")
+      .add_with_default("side", &options.side, "side of the plates to draw [m]")
+      .positive();
+}
+
+void check(const Options& options) {
+  if (!options.print.empty()) {
+    if (!options.input.empty()) fail("--print: draws plates and reads no photographs");
+    if (options.plates.empty() && options.bars.empty())
+      fail("--print: needs --plates or --bars, the targets to draw");
+    if (options.families.size() != 1)
+      fail("--print: needs --families with one family, that of the targets to draw");
+    return;
+  }
+  if (!options.plates.empty()) fail("--plates: needs --print, the folder for the drawings");
+  if (!options.bars.empty()) fail("--bars: needs --print, the folder for the drawings");
+  if (options.output.empty()) fail("--output-file is required");
+  require_not_an_input(options.output, options.input, "--output-file");
+}
+
+}  // namespace
+
+Options parse_command_line(int argc, const char* const* argv) {
+  Options options;
+  ProgramOptions program{
+      "FindTargets", "finds coded targets in photographs, and draws targets to print", {}, {}};
+  program.version = version_line(program.name);
+  program.instead_of_input = "print";
+  declare(program.visible, options);
+  options.parsed = parse_options(argc, argv, program);
+  if (options.parsed.run) check(options);
+  return options;
+}
+
+}  // namespace axial::apps

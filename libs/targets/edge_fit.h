@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to libs/targets: fits the outline of a uniform area to the pixels around it.
+#pragma once
+
+#include <ceres/jet.h>
+#include <ceres/tiny_solver.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <span>
+
+namespace axial::targets {
+
+// An outline with `kShape` numbers, and the step of brightness across it.
+template <int kShape>
+struct EdgeFit {
+  Eigen::Matrix<double, kShape, 1> shape;
+  Eigen::Matrix<double, kShape, kShape> covariance;  // from the residuals of the pixels
+  double outside = 0, inside = 0;                    // brightness
+  double blur = 1;                                   // standard deviation of the blur [px]
+};
+
+// The share of light from inside a straight edge that is blurred by a Gaussian. `distance` of the
+// pixel from the edge, positive inside, in standard deviations of the blur.
+template <class T>
+T inside_share(const T& distance) {
+  using std::erf;
+  return 0.5 * (1.0 + erf(distance * std::sqrt(0.5)));
+}
+
+// The residuals of the model
+//   brightness = outside + (inside - outside) share,
+// where `share` is the share of the light of a pixel that comes from inside. The parameters are the
+// shape, outside, inside and log(blur).
+template <int kShape, class Share>
+class EdgeResiduals {
+ public:
+  using Scalar = double;
+  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = kShape + 3 };
+
+  EdgeResiduals(const cv::Mat1f& picture, std::span<const cv::Point> pixels, const Share& share)
+      : picture_(picture), pixels_(pixels), share_(share) {}
+
+  int NumResiduals() const { return static_cast<int>(pixels_.size()); }
+
+  bool operator()(const double* parameters, double* residuals, double* jacobian) const {
+    using Jet = ceres::Jet<double, NUM_PARAMETERS>;
+    std::array<Jet, NUM_PARAMETERS> p;
+    for (int i = 0; i < NUM_PARAMETERS; ++i) p[static_cast<std::size_t>(i)] = Jet(parameters[i], i);
+    const Jet per_blur = exp(-p[kShape + 2]);
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+      const Jet share = share_(p.data(), static_cast<double>(pixels_[i].x),
+                               static_cast<double>(pixels_[i].y), per_blur);
+      const Jet residual = p[kShape] + (p[kShape + 1] - p[kShape]) * share -
+                           static_cast<double>(picture_(pixels_[i]));
+      if (!std::isfinite(residual.a)) return false;
+      residuals[i] = residual.a;
+      if (jacobian)
+        for (int k = 0; k < NUM_PARAMETERS; ++k)
+          jacobian[static_cast<std::size_t>(k) * pixels_.size() + i] = residual.v[k];
+    }
+    return true;
+  }
+
+ private:
+  const cv::Mat1f& picture_;
+  std::span<const cv::Point> pixels_;
+  const Share& share_;
+};
+
+// Fits an outline, begun at `start`, whose `blur` is only a first guess. `share(shape, x, y,
+// per_blur)`: the share of the model above at the pixel (x, y), for ceres::Jet; `per_blur` is 1 /
+// blur. `pixels` must lie in
+// `picture`. Nothing if there are too few pixels or the pixels do not determine the outline.
+template <int kShape, class Share>
+std::optional<EdgeFit<kShape>> fit_edge(const cv::Mat1f& picture, std::span<const cv::Point> pixels,
+                                        const EdgeFit<kShape>& start, const Share& share) {
+  constexpr int kCount = kShape + 3;
+  if (pixels.size() < 2 * kCount) return std::nullopt;
+  using Residuals = EdgeResiduals<kShape, Share>;
+  const Residuals residuals(picture, pixels, share);
+  typename ceres::TinySolver<Residuals>::Parameters p;
+  p << start.shape, start.outside, start.inside, std::log(start.blur);
+  ceres::TinySolver<Residuals> solver;
+  solver.options.max_num_iterations = 30;
+  solver.Solve(residuals, &p);
+
+  const auto count = static_cast<Eigen::Index>(pixels.size());
+  Eigen::VectorXd errors(count);
+  Eigen::Matrix<double, Eigen::Dynamic, kCount> jacobian(count, kCount);
+  if (!residuals(p.data(), errors.data(), jacobian.data())) return std::nullopt;
+  const Eigen::LDLT<Eigen::Matrix<double, kCount, kCount>> normal(jacobian.transpose() * jacobian);
+  if (normal.info() != Eigen::Success || !normal.isPositive()) return std::nullopt;
+  const double variance = errors.squaredNorm() / static_cast<double>(count - kCount);
+  const Eigen::Matrix<double, kCount, kCount> covariance =
+      variance * normal.solve(Eigen::Matrix<double, kCount, kCount>::Identity());
+  if (!covariance.allFinite()) return std::nullopt;
+  return EdgeFit<kShape>{p.template head<kShape>(),
+                         covariance.template topLeftCorner<kShape, kShape>(), p[kShape],
+                         p[kShape + 1], std::exp(p[kShape + 2])};
+}
+
+}  // namespace axial::targets

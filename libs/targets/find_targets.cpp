@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "targets/find_targets.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <tuple>
+
+#include "targets/ring_finder.h"
+#include "targets/square_finder.h"
+
+namespace axial::targets {
+namespace {
+
+// The brightness from 0 to 255, with the fractions of photographs of 16 bits.
+cv::Mat1f grey_of(const cv::Mat& photograph) {
+  cv::Mat grey = photograph;
+  if (photograph.channels() == 3) cv::cvtColor(photograph, grey, cv::COLOR_BGR2GRAY);
+  double low = 0, high = 0;
+  cv::minMaxLoc(grey, &low, &high);
+  cv::Mat1f result;
+  grey.convertTo(result, CV_32F, grey.depth() == CV_8U || high <= 0 ? 1 : 255 / high);
+  return result;
+}
+
+// Keeps the best of the detections of one target at one place.
+std::vector<Detection> without_repetitions(std::vector<Detection> all) {
+  std::ranges::sort(all, std::ranges::greater{}, &Detection::agreement);
+  std::vector<Detection> kept;
+  for (Detection& candidate : all) {
+    const auto repeats = [&](const Detection& other) {
+      return (other.centre.pixel - candidate.centre.pixel).norm() <
+             0.3 * std::max(other.width, candidate.width);
+    };
+    if (std::ranges::none_of(kept, repeats)) kept.push_back(std::move(candidate));
+  }
+  std::ranges::sort(kept, {}, [](const Detection& d) {
+    return std::tuple(d.number, d.centre.pixel.y(), d.centre.pixel.x());
+  });
+  return kept;
+}
+
+}  // namespace
+
+std::vector<Detection> find_targets(const cv::Mat& photograph, std::span<const Family> families) {
+  const cv::Mat1f grey = grey_of(photograph);
+  std::vector<Detection> all;
+  for (const Family& family : families) {
+    std::vector<Detection> found = without_repetitions(
+        family.kind == Kind::ring ? find_rings(grey, family) : find_squares(grey, family));
+    std::ranges::move(found, std::back_inserter(all));
+  }
+  return all;
+}
+
+}  // namespace axial::targets

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Finds coded targets in photographs. Start here to read libs/targets.
+#pragma once
+
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <span>
+#include <vector>
+
+#include "targets/detection.h"
+#include "targets/family.h"
+
+namespace axial::targets {
+
+// Finds the targets of `families` in a photograph of 8 or 16 bits, B G R or grey. Each target is
+// found once; of two places with one label both are returned, because two plates with one code are
+// a fault that the caller names. The order is that of `families`, then that of the numbers, then
+// from top to bottom. A target is found only if all of it is in the photograph.
+std::vector<Detection> find_targets(const cv::Mat& photograph, std::span<const Family> families);
+
+}  // namespace axial::targets
