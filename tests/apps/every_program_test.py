@@ -8,7 +8,7 @@ import os
 import shutil
 
 from programs import BIN, contents, files_below, grey_png, main, read, run, without_streams, write
-from tiny_scene import DENSIFY
+from tiny_scene import CENTRES, DENSIFY, picture
 from worlds import Wall, cloud, matrix_text, ply, wall
 
 # The wall is small and simple.
@@ -152,6 +152,21 @@ class WrongMeshes(Programs):
         self.refused(": vertex 8 has a coordinate larger than 1e+18", ply([*vertices[:-1], (0, 1e20, 1)], faces),
                      self.PROGRAMS[:1])
         self.refused(": does not belong to", ply(*wall(z=-1)), self.PROGRAMS[:3])
+
+
+class WrongPhotographs(Programs):
+    def test_each_program_names_the_file(self):
+        image = self.images[1]
+        whole = read(image)
+        for content, expected in ((picture(CENTRES[1], 50, 72), "is 50x72, but its camera is 96x72"),
+                                  (whole[:len(whole) // 2], ""), (b"", ""), (None, "")):
+            os.remove(image) if content is None else write(image, content)
+            for program in ("DensifyPointCloud", "RefineMesh", "TextureMesh", "MapSurface", "ViewScene"):
+                command = self.densify() if program == "DensifyPointCloud" else self.program(program)
+                if program == "ViewScene":
+                    command += ("--report", "page")
+                with self.subTest(program=program, expected=expected):
+                    self.assertIn(expected, self.refuses_and_keeps("0001.png", *command).stderr)
 
 
 class Rivals(Programs):

@@ -52,13 +52,6 @@ class ForeignMaps(Densified):
                     self.assertEqual(read(os.path.join(folder, name)),
                                      read(self.at(medium, name)), name)
 
-    def test_ours_of_other_options_are_replaced_as_before(self):
-        for medium in ("air", "water"):
-            folder = self.copy(medium)
-            self.said(folder, "--geometric-iters", "1")
-            self.said(folder)
-            self.assertEqual(self.cloud(folder), self.whole(medium))
-
     def test_ours_that_are_damaged_are_made_anew_with_a_word(self):
         folder = self.copy("air")
         path = os.path.join(folder, "depth0001.dmap")

@@ -79,41 +79,6 @@ class Masks(ProgramTest):
                      "3 images"):
             self.assertIn(part, warnings[0])
 
-    def test_images_of_one_name(self):
-        self.images = [self.path("images", f"cam{i}", "0001.png") for i in range(3)]
-        self.write_images()
-        self.put(LEFT, "masks", "0001.mask.png")
-        self.refuses(f"no mask for image {self.images[0]}: looked for", *self.arguments(
-            "--mask-path", "masks"))
-        for i, row in enumerate((LEFT, RIGHT, LEFT)):
-            self.put(row, "masks", f"cam{i}", "0001.mask.png")
-        self.densify("--mask-path", "masks")
-        self.assertEqual([self.matched(i) for i in range(3)],
-                         [(False, True), (True, False), (False, True)])
-
-    def test_a_label_that_no_mask_has(self):
-        for name in self.names:
-            self.put(LEFT, "masks", name[:-4] + ".mask.png")
-        said = self.densify("--mask-path", "masks", "--ignore-mask-label", "7")
-        self.assertIn("--ignore-mask-label 7: no mask has this label", said)
-        self.assertIn("0, 255", said)
-        self.assertEqual(self.matched(0), (True, True))
-        self.assertNotIn("no mask has", self.densify("--mask-path", "masks"))
-
-    def test_masks_that_are_not_asked_for(self):
-        for name in self.names:
-            self.put(LEFT, "masks", name[:-4] + ".mask.png")
-        said = self.densify("--mask-path", "masks", "--ignore-mask-label", "-1")
-        self.assertIn("is not used, because --ignore-mask-label is -1", said)
-        self.assertEqual(self.matched(0), (True, True))
-
-    def test_a_folder_that_lacks_masks(self):
-        self.refuses("masks: is not a folder of masks", *self.arguments("--mask-path", "masks"))
-        self.put(LEFT, "masks", "0000.mask.png")
-        self.put(LEFT, "masks", "0002.mask.png")
-        self.refuses(f"no mask for image {self.images[1]}: looked for 0001.mask.png, 0001.png.png, "
-                     f"0001_mask.png and 0001.png in {self.path('masks')}", *self.arguments(
-                         "--mask-path", "masks"))
 
 
 class MasksForColmap(ProgramTest):

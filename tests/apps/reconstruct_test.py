@@ -2,18 +2,17 @@
 """apps/pipeline/reconstruct: from raw underwater photographs to a cloud in one command, which goes
 on after it was killed at any step."""
 
-import json
 import os
 import pathlib
 import shutil
 import signal
 import subprocess
-import tempfile
 import time
 import unittest
 
 from pipeline_folder import reconstruct_command, simulate
-from programs import BIN, main, read
+from programs import BIN, main, new_folder, read_json
+from readers import shown_scene
 from support import colmap_text
 
 STEPS = ["features", "lens", "matches", "poses", "refine", "import", "densify", "mesh",
@@ -21,21 +20,18 @@ STEPS = ["features", "lens", "matches", "poses", "refine", "import", "densify", 
 PAGE = pathlib.Path(BIN).resolve().parent / "share" / "axialmvs" / "view" / "viewer.js"
 if PAGE.exists():
     STEPS.insert(-1, "page")
+COARSE_MESH = ("--mesh=-d 4", "--refine-mesh=--scales 1")
 
 
 @unittest.skipUnless(shutil.which("colmap"), "COLMAP is not installed")
 class Reconstruct(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.scene = pathlib.Path(cls.folder.name) / "scene"
+        cls.folder = pathlib.Path(new_folder(cls.addClassCleanup))
+        cls.scene = cls.folder / "scene"
         simulate(cls.scene, "closeup", 6, (640, 480), samples=2)
         cls.positions = cls.scene / "positions.txt"
         cls.positions.write_text(colmap_text.positions(cls.scene / "sparse"))
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
 
     def start(self, out, *more, **options):
         """Starts the script in the folder above `out`, with a relative path to `out`."""
@@ -56,7 +52,7 @@ class Reconstruct(unittest.TestCase):
     def killed_at(self, step, out):
         """Kills the pipeline with all its children soon after `step` began. Returns its output
         until then."""
-        process = self.start(out, start_new_session=True)
+        process = self.start(out, *COARSE_MESH, start_new_session=True)
         said = ""
         for line in process.stdout:
             said += line
@@ -68,24 +64,24 @@ class Reconstruct(unittest.TestCase):
         return said
 
     def test_goes_on_where_it_was_killed(self):
-        out = pathlib.Path(self.folder.name) / "killed"
+        out = self.folder / "killed"
         for number, step in enumerate(STEPS):
             said = self.killed_at(step, out)
             # The step before this one was killed, so this run had to finish it.
             self.assertGreaterEqual(said.count("done before"), number - 1, said)
-        ended = self.ended(out)
+        ended = self.ended(out, *COARSE_MESH)
         self.assertEqual(ended.returncode, 0, ended.stderr)
         self.assertGreaterEqual(ended.stdout.count("done before"), len(STEPS) - 1, ended.stdout)
         self.check(out)
-        again = self.ended(out)
+        again = self.ended(out, *COARSE_MESH)
         self.assertEqual(again.stdout.count("done before"), len(STEPS), again.stdout)
 
     def check(self, out):
-        report = json.loads((out / "refined" / "report.json").read_text())
+        report = read_json(out, "refined", "report.json")
         self.assertLess(report["rms_after_px"], 1)
         self.assertEqual(len(report["images"]), 6)
-        self.assertIn("mean distance to the truth", read(out / "report.md").decode())
-        evaluation = json.loads((out / "evaluation.json").read_text())
+        self.assertIn("mean distance to the truth", (out / "report.md").read_text())
+        evaluation = read_json(out, "evaluation.json")
         self.assertGreater(evaluation["accuracy"]["count"], 50000)
         self.assertLess(evaluation["accuracy"]["median"], 0.002)
         self.assertTrue((out / "scene_textured.glb").read_bytes().startswith(b"glTF"))
@@ -96,8 +92,7 @@ class Reconstruct(unittest.TestCase):
             self.check_page(out)
 
     def check_page(self, out):
-        scene = json.loads(read(out / "page" / "data" / "scene.js").decode()
-                           .removeprefix("axialData.scene(").removesuffix(");\n"))
+        scene = shown_scene(out / "page")
         self.assertEqual([step["name"] for step in scene["run"]["steps"]], STEPS[:-2])
         for step in scene["run"]["steps"]:
             program = pathlib.Path(step["command"][0]).name
@@ -109,7 +104,7 @@ class Reconstruct(unittest.TestCase):
         self.assertEqual(scene["truth"], "mesh.ply")
 
     def test_says_what_is_missing(self):
-        out = pathlib.Path(self.folder.name) / "missing"
+        out = self.folder / "missing"
         for options, message in [
                 (["--lens", "nowhere.txt"], "--lens nowhere.txt: not found"),
                 (["--scale-from", "positions:none"],
@@ -135,9 +130,9 @@ class Reconstruct(unittest.TestCase):
             self.assertFalse(out.exists())
 
     def test_names_positions_of_no_photograph(self):
-        out = pathlib.Path(self.folder.name) / "positions"
+        out = self.folder / "positions"
         lines = colmap_text.positions(self.scene / "sparse").splitlines(keepends=True)
-        misspelt = pathlib.Path(self.folder.name) / "misspelt.txt"
+        misspelt = self.folder / "misspelt.txt"
         misspelt.write_text("# survey\n" + "".join(["other" + line for line in lines[:-2]]
                                                    + lines[-2:]))
         ended = self.ended(out, "--scale-from", f"positions:{misspelt}")

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """ReproducePaper as users run it: all experiments with --quick, judged by their numbers."""
 
-import json
 import math
 import os
 import pathlib
@@ -304,10 +303,6 @@ class WithoutPoses(ProgramTest):
 class Figure3(ProgramTest):
     """Parts and threads, tested with the smallest experiment."""
 
-    def part(self):
-        folder = self.path("a", "parts", "figure3")
-        return os.path.join(folder, sorted(os.listdir(folder))[0])
-
     def all_bytes(self, folder):
         """The contents of all files except the measured times."""
         return {name: data for name, data in contents(self.path(folder)).items() if not name.endswith(".seconds")}
@@ -316,16 +311,6 @@ class Figure3(ProgramTest):
         for folder, threads in (("a", 1), ("b", 3)):
             self.succeeds(PROGRAM, "figure3", "-o", self.path(folder), "--max-threads", threads)
         self.assertEqual(self.all_bytes("a"), self.all_bytes("b"))
-
-    def test_damaged_and_foreign_parts_are_computed_again(self):
-        self.succeeds(PROGRAM, "figure3", "-o", self.path("a"))
-        expected = self.all_bytes("a")
-        whole = read_json(self.part())
-        for wrong in (b"", b"{}", b"[1]", read(self.part())[:100],
-                      json.dumps({**whole, "inputs": {"version": 0}}).encode()):
-            write(self.part(), wrong)
-            self.succeeds(PROGRAM, "figure3", "-o", self.path("a"))
-            self.assertEqual(self.all_bytes("a"), expected)
 
     def test_parts_one_by_one_are_the_whole(self):
         self.succeeds(PROGRAM, "figure3", "-o", self.path("a"))

@@ -169,12 +169,9 @@ class Scales(Simulated):
         self.refuses_each(
             refine, ("--scale-sigma 0.1: is the standard deviation of --scale-from", *port, "--scale-sigma", "0.1"),
             *((expected, *known, *(() if "--housing" in arguments else port), *arguments) for expected, *arguments in (
-                ("--normal-sigma 1: --refine none does not name normal", "--refine", "none", "--normal-sigma", "1"),
-                ("--centre-sigma 1: --refine auto does not name centre", "--centre-sigma", "1"),
                 ("--distance-sigma 1e-320: must be 0, or 1e-12 or more", "--refine", "distance", "--distance-sigma",
                  "1e-320"),
                 ("--focal-sigma 0.1: --refine does not name focal", "--refine", "index", "--focal-sigma", "0.1"),
-                ("--refine centre: there is a flat port", "--refine", "centre"),
                 ("--refine normal: there is a dome", "--refine", "normal", "--housing", self.path("dome.json")),
                 ("--refine index: there are images in air", "--refine", "index", "--housing",
                  self.path("mixed.json")))))

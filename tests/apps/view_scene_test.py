@@ -11,7 +11,7 @@ import unittest
 from browser import CHROMIUM, Browser
 from programs import BIN, contents, files_below, main, read, write
 from readers import shown_scene
-from tiny_scene import CENTRES, CX, CY, FOCAL, TinyScene, picture
+from tiny_scene import CENTRES, CX, CY, FOCAL, TinyScene
 from worlds import cloud, flat, housing, ply, wall
 
 PAGE = os.path.join(BIN, "..", "share", "axialmvs", "view", "viewer.js")
@@ -155,14 +155,6 @@ class ViewFolder(ViewCase):
             self.refuses_and_keeps(expected, *command)
         self.refuses_and_keeps("--report is missing", *self.view()[:-2])
 
-    def test_a_photograph_that_does_not_fit_is_refused(self):
-        whole = read(self.images[1])
-        write(self.images[1], picture(CENTRES[1], 50, 72))
-        self.refuses_and_keeps("0001.png: is 50x72, but its camera is 96x72", *self.view())
-        write(self.images[1], whole[:len(whole) // 2])
-        self.refuses_and_keeps("0001.png", *self.view())
-        os.remove(self.images[1])
-        self.refuses_and_keeps("0001.png", *self.view())
 
 
 class WithoutPage(ViewCase):

@@ -140,10 +140,6 @@ class FlatPort(PortTest):
         self.assertGreater(cloud_size(read(os.path.join(folder, "scene_dense.ply"))), 0)
         self.assertFalse([name for name in files_below(folder) if "report" in name])
 
-    def test_one_source_view_tells_less_and_is_no_fault(self):
-        folder = self.scene("pairs", housing=self.housing())
-        self.assertNotIn(WARNING, self.densify(folder, "--number-views", "1"))
-
     def test_the_report_is_no_input(self):
         folder = self.scene("right", housing=self.housing())
         self.refuses("--report-file", *self.command(folder, "--report-file", "scene.mvs"))
