@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files and images that could be confused: of two possible inputs, the program names the one that it reads, and it
-never overwrites an input; an entry of a housing or lens file applies to one image only, or is refused. Also the
+"""Files and images that could be confused: of two possible inputs, the program names the one that it reads. Also the
 memory for an import of many cameras."""
 
-import json
 import os
 import subprocess
 import sys
 
 import tiny_scene
-from programs import BIN, ProgramTest, main, png, read, write
+from programs import BIN, ProgramTest, main, png, write
 from worlds import flat, housing
 
 
@@ -91,52 +89,6 @@ class ManyCameras(ProgramTest):
         one_map = 8 * self.WIDTH * self.HEIGHT
         one, many = self.peak_of_import(1), self.peak_of_import(self.COUNT)
         self.assertLess(many - one, 2 * one_map, "all maps would be eleven more")
-
-
-class Names(ProgramTest):
-    """Images with the same base name in several folders, in place of 0000.png, 0001.png and 0002.png."""
-    NAMES = ("cam0/0000.png", "cam1/0000.png", "cam1/0001.png")
-
-    def setUp(self):
-        super().setUp()
-        tiny_scene.write_colmap(self.path("colmap"))
-        text = read(self.path("colmap", "sparse", "images.txt")).decode()
-        for old, new in reversed(list(zip(tiny_scene.names(), self.NAMES))):
-            write(self.path("colmap", "images", new), read(self.path("colmap", "images", old)))
-            text = text.replace(f" 1 {old}\n", f" 1 {new}\n")
-        write(self.path("colmap", "sparse", "images.txt"), text)
-
-    def port(self, images, default="none"):
-        write(self.path("port.json"), housing(flat(), default, images=images))
-        return "--housing", self.path("port.json")
-
-    def command(self, *arguments):
-        return ("InterfaceCOLMAP", "-i", self.path("colmap"), "--image-folder", self.path("colmap", "images"), "-o",
-                self.path("scene.mvs"), *arguments)
-
-    def test_a_base_name_of_several_images_is_refused(self):
-        expected = f"{self.path('port.json')}: housing.images.0000.png matches "
-        for images in ({"0000.png": "main"}, {"0000.png": "none", "0001.png": "main"}):
-            self.refuses(expected + "cam0/0000.png and cam1/0000.png", *self.command(*self.port(images, "main")))
-        port = self.port({"0000.png": "main"})
-        self.refuses(expected + "cam0/0000.png and cam1/0000.png", "RefinePoses", "-i", self.path("colmap"), "--lens",
-                     self.path("colmap", "sparse"), "-o", self.path("out"), *port)
-        # Without a housing the import succeeds. A scene names images by their paths, so there the
-        # base name is ambiguous, too, also in a lens file.
-        self.succeeds(*self.command())
-        densify = ("DensifyPointCloud", "-i", self.path("scene.mvs"), "-w", self.folder)
-        self.refuses(expected, *densify, *port)
-        write(self.path("scene.lenses.json"), json.dumps(
-            {"version": 1, "lenses": {}, "default": "none", "images": {"0000.png": "none"}}))
-        self.refuses(f"{self.path('scene.lenses.json')}: lenses.images.0000.png matches ", *densify)
-
-    def test_names_that_tell_images_apart(self):
-        # In the second file the first image has an entry of its own, so 0000.png can only mean the second image.
-        for images, expected in (({"cam0/0000.png": "main"}, ["main", "none", "none"]),
-                                 ({"cam0/0000.png": "none", "0000.png": "main"}, ["none", "main", "none"])):
-            self.succeeds(*self.command(*self.port(images)))
-            written = json.loads(read(self.path("scene.housing.json")))
-            self.assertEqual([written["images"].get(name, written["default"]) for name in self.NAMES], expected)
 
 
 if __name__ == "__main__":

@@ -204,12 +204,6 @@ class Folders(Belonging):
                 said = self.succeeds(*command, cwd=self.path("empty")).stdout
                 self.assertIn(f"scene.mvs: the paths of its images start at {self.one}", said, command)
 
-    def test_two_files_of_one_name_are_noticed(self):
-        shutil.copytree(self.path("one", "water"), self.path("empty", "water"))
-        warnings = self.warnings("TextureMesh", "-i", self.path("one", "scene.mvs"), "-m", self.mesh, "-o",
-                                 self.path("new.glb"), cwd=self.path("empty"))
-        self.assertIn(self.path("empty", "water", "0000.jpg") + " is used, although " + self.photograph(0),
-                      warnings[0])
 
 
 if __name__ == "__main__":

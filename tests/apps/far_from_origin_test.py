@@ -97,25 +97,6 @@ class BitForBit(ProgramTest):
         self.assertFalse(os.path.exists(self.path("far", "scene_dense.geo.json")))
         self.assertIsNone(self.ply("far", "scene_dense.ply").offset)
 
-    def test_a_scene_of_another_program(self):
-        """Its poses are double, its points float. Reading moves both into a local frame."""
-        centres = [added(c, FAR) for c in tiny_scene.CENTRES]
-        points = [(added(x, FAR), views) for x, views in tiny_scene.sparse_points()]
-        for name, c, p in (("far", centres, points), ("near", None, None)):
-            write(self.path("other", name + ".mvs"), tiny_scene.mvs(
-                [self.path("near", "images", image) for image in tiny_scene.names()], centres=c,
-                points=p))
-            result = self.densify("other", name + ".mvs")
-            for file in os.listdir(self.path("other")):
-                if ".dmap" in file:
-                    os.remove(self.path("other", file))
-            said = result.stdout + result.stderr
-            self.assertEqual("a resolution of only 0.25 m" in said, name == "far", said)
-        self.check_offset("other", "far_dense.geo.json")
-        near, far = (self.ply("other", name) for name in ("near_dense.ply", "far_dense.ply"))
-        self.assertEqual(far.offset, FAR)
-        self.assertGreater(len(far.points), 0.9 * len(near.points))
-
 
 class FarScene(Simulated):
     """The close-up scene at the origin and at two other places, with its cloud under water."""

@@ -60,22 +60,6 @@ class Housings(Tiny):
             self.assertIn("gives no image a port; it is not used", said)
 
 
-class Photographs(Tiny):
-    def test_a_missing_one_is_left_out_if_that_is_allowed(self):
-        gone = tiny_scene.names()[1]
-        os.remove(self.path("near", "images", gone))
-        os.remove(self.path("near", "scene.mvs"))
-        self.refuses(f"{gone}: image not found (--allow-missing continues without it)",
-                     "InterfaceCOLMAP", "-i", self.path("near"))
-        said = self.succeeds("InterfaceCOLMAP", "-i", self.path("near"), "--allow-missing").stdout
-        self.assertRegex(said, f"warning: .*{gone}: image not found; it is not used")
-        self.assertRegex(said, "scene.mvs: 2 images, ")
-        self.densify()
-        os.remove(self.path("near", "images", tiny_scene.names()[0]))
-        self.refuses("has 1 registered images, at least 2 are needed", "InterfaceCOLMAP", "-i",
-                     self.path("near"), "--allow-missing")
-
-
 class Clouds(Tiny):
     """The cloud given with -p, exports, and the files written beside them."""
 

@@ -54,16 +54,6 @@ class Killed(Densified):
             yield
         self.assertGreater(killed, 0)
 
-    def killed_with(self, file, folder, *command):
-        """Kills a run as soon as it has written `file`. Returns whether the file is left: on a busy
-        machine the run may end before it is killed."""
-        process = self.start(folder, *command)
-        while not os.path.exists(file) and process.poll() is None:
-            time.sleep(0.002)
-        process.kill()
-        self.assertIn(process.wait(), (0, -signal.SIGKILL))
-        return process.returncode != 0 and os.path.exists(file)
-
     def check(self, folder, other, *command):
         """Compares runs in `folder` that are killed with a run in `other` that is not."""
         before = files_below(other)
@@ -98,23 +88,6 @@ class Killed(Densified):
     def test_refine(self):
         self.check(*self.two_copies(), "RefineMesh", "-m", "scene_dense_mesh.ply", *REFINE)
 
-    def test_refine_goes_on_after_the_last_resolution_that_is_done(self):
-        folder, other = self.two_copies()
-        command = ("RefineMesh", "-m", "scene_dense_mesh.ply", *REFINE)
-        self.finish(other, *command)
-        state = os.path.join(folder, "refined.ply.state")
-        self.assertTrue(any(self.killed_with(state, folder, *command) for _ in range(10)),
-                        "all runs ended before they could be killed")
-        kept = read(state)
-        said, _ = self.finish(folder, *command, "--max-threads", "1")
-        self.assertRegex(said, r"refined.ply.state: [12] of 2 resolutions are done already")
-        self.assertEqual(contents(folder), contents(other))
-        # The state of a run with other options, and a damaged state, are not used.
-        for options, bytes_of_state in ((("--regularity-weight", "0.3"), kept), ((), kept[:-1])):
-            write(state, bytes_of_state)
-            said, _ = self.finish(folder, *command, *options)
-            self.assertNotIn("done already", said)
-        self.assertEqual(contents(folder), contents(other))
 
 
 if __name__ == "__main__":

@@ -4,9 +4,9 @@
 import os
 import struct
 
-from programs import main, must, read, write
+from programs import main, must, read
 from readers import Ply
-from worlds import Densified, cloud
+from worlds import Densified
 
 
 class Mesh(Densified):
@@ -73,14 +73,6 @@ class Mesh(Densified):
         self.meshed(folder, "--mesh-file", "scene_dense_mesh.ply", "-o", "half", "--target-face-num", "500")
         self.assertLess(abs(len(self.ply(folder, "half.ply").faces) - 500), 60)
 
-    def test_meshes_are_remeshed(self):
-        folder = self.copy("air")
-        self.meshed(folder, "-o", "short", "--edge-length", "0.01")
-        self.meshed(folder, "--mesh-file", "scene_dense_mesh.ply", "-o", "long", "--edge-length", "0.02")
-        short, long = (len(self.ply(folder, name).faces) for name in ("short.ply", "long.ply"))
-        # Half the length: four times as many faces, if the borders were the same.
-        self.assertGreater(short, 2.5 * long)
-
     def marks(self, folder, name):
         """The marks of the faces of a mesh without texture; None if it has no marks."""
         mesh = self.ply(folder, name)
@@ -108,28 +100,12 @@ class Mesh(Densified):
                       "--scales", "1")
         self.assertIsNone(self.marks(folder, "fine.ply"))
 
-    def refused(self, folder, expected, *arguments):
-        self.refuses(expected, "ReconstructMesh", "-i", "scene_dense.mvs", "-w", folder, *arguments)
-
     def test_tiles_make_the_mesh_of_one_piece(self):
         folder = self.mesh("water", "--refractive", "--tiles", "3")
         at_once = read(os.path.join(folder, "scene_dense_mesh.ply"))
         self.assertLess(abs(len(Ply(at_once).faces) / len(self.ply(self.at("water")).faces) - 1), 0.01)
         self.assertLess(self.distance("water", folder), 0.002)
         self.assertEqual([name for name in os.listdir(folder) if "tiles" in name], [])
-        # Tiles that other runs made, one of which was killed while it wrote.
-        folder = self.copy("water", "_mesh.ply")
-        file = os.path.join(folder, "scene_dense_mesh.ply")
-        for tile in (3, 1):
-            self.meshed(folder, "--refractive", "--tile", f"{tile}/3")
-        tiles = os.path.join(folder, "scene_dense_mesh.tiles3")
-        tiles = os.path.join(tiles, *os.listdir(tiles))
-        write(os.path.join(tiles, "mesh1.bin"), read(os.path.join(tiles, "mesh1.bin"))[:-100])
-        self.assertFalse(os.path.exists(file))
-        said = self.meshed(folder, "--refractive", "--tiles", "3")
-        self.assertEqual(read(file), at_once)
-        self.assertIn("Tile 1 of 3", said)
-        self.assertNotIn("Tile 3 of 3", said)
 
     COMMAND = ("ReconstructMesh", "-i", "scene_dense.mvs", "-w")
 
@@ -144,19 +120,6 @@ class Mesh(Densified):
             ("--max-memory", "--max-memory", "1"), ("housing", "--refractive"),
             ("--output-file new/: must be the name of a file", "-o", "new/"))
 
-    def test_wrong_clouds_are_refused(self):
-        folder = self.copy("air")
-        good = self.cloud(folder)
-        header, _ = good.split(b"end_header\n", 1)
-        wrong = (b"", good[:len(header) + 11], good[:-1], b"ply\n")
-        corners = [((0, 0, 1), [0]), ((1, 0, 1), [0]), ((0, 1, 1), [0])]
-        self.refuses_contents(os.path.join(folder, "scene_dense.ply"), (*self.COMMAND, folder),
-                              *(("scene_dense.ply", content) for content in wrong),
-                              ("have no views", good.replace(b"view_indices", b"view_indicez")),
-                              ("point 3 names view 9", cloud([*corners, ((0, 0, 2), [9])])),
-                              ("scene_dense.ply", cloud([*corners, ((1, 1, 1), [0])])))
-        self.refuses_contents(os.path.join(folder, "scene_dense.ply"), (*self.COMMAND, folder, "--tiles", "2"),
-                              ("scene_dense.ply", good[:-1]))
 
 
 if __name__ == "__main__":

@@ -57,13 +57,6 @@ class OpencvLens(LensTest):
         self.assertIn("scene.lenses.json: file not found", ignored)
         self.assertGreater(self.errors("scene")[0], 3 * obeyed)
 
-    def test_straight_lenses_behind_a_port_are_said_to_be_so(self):
-        self.import_scene("water", "straight", "--undistort", "1")
-        self.assertIn('"default": "none"', read(self.path("straight", "scene.lenses.json")).decode())
-        said = self.densify("straight", "--refractive", *QUICK)
-        self.assertNotIn("file not found", said)
-        self.assertIn("scene_dense.lenses.json", files_below(self.path("straight")))
-
     def test_images_in_air_are_undistorted_unless_told_otherwise(self):
         self.import_scene("water", "air", "--undistort", "0", port=())
         self.assertIn("scene.lenses.json", files_below(self.path("air")))

@@ -21,8 +21,7 @@ class Refined(Densified):
             mesh, rng = Ply(read(start)), random.Random(1)
             write(start, binary_mesh([[x + rng.gauss(0, 0.002) for x in v] for v in mesh.points], mesh.triangles))
 
-        # At the size of the images, under water by two threads.
-        for medium, *arguments in (("air",), ("water", "--refractive", "--max-threads", "2")):
+        for medium, *arguments in (("air",), ("water", "--refractive")):  # at the size of the images
             said = must("RefineMesh", "-i", "scene_dense.mvs", "-m", "start.ply", "-w", cls.at(medium), "-o",
                         "refined.ply", *arguments)
             assert "vertices measured in" in said, said
@@ -48,13 +47,6 @@ class Refined(Densified):
         folder = self.copy("water")
         self.refine(folder, "--camera-model", "pinhole", result="ignored.ply")
         self.assertGreater(self.error("water", folder, "ignored.ply"), 1.5 * refined)
-
-    def test_threads_and_memory_do_not_change_the_bytes(self):
-        folder = self.copy("water")
-        _, one = self.refine(folder, "--max-threads", "1", "--max-memory", "160")
-        self.assertEqual(one, read(self.at("water", "refined.ply")))
-        self.refuses("--max-memory", "RefineMesh", "-i", "scene_dense.mvs", "-m", "start.ply", "-w",
-                     folder, "-o", "small.ply", "--max-memory", "90")
 
     def test_options_of_openmvs(self):
         folder = self.copy("air")
@@ -89,8 +81,10 @@ class Refined(Densified):
         command = ("RefineMesh", "-i", "scene_dense.mvs", "-w", folder, "-m", "wrong.ply")
         write(os.path.join(folder, "wrong.ply"), binary_mesh([(-1, -1, 101), (1, -1, 101), (1, 1, 101)], [(0, 1, 2)]))
         self.refuses_and_keeps("wrong.ply: no camera of", *command)
+        write(os.path.join(folder, "wrong.ply"), read(os.path.join(folder, "start.ply")))
         self.refuses_each(command, ("--scale-step 1.1", "--scale-step", "1.1"),
                           ("--refractive", "--refractive", "--camera-model", "pinhole"),
+                          ("--max-memory", "--max-memory", "90"),
                           ("housing file not found", "--refractive"),
                           ("--output-file ./: must be the name of a file", "-o", "./"))
 

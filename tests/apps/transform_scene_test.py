@@ -8,7 +8,7 @@ import re
 import tiny_scene
 from programs import files_below, main, read, write
 from readers import Mvs, Ply, png_size
-from worlds import SHIFT, TURN, Wall, flat, housing, lake, matrix_text, moved, ply, times
+from worlds import SHIFT, TURN, Wall, flat, housing, matrix_text, moved, ply, times
 
 UTM = (512345.25, 5412345.5, 105.75)
 CUBE = [(x, y, z) for z in (0.0, 1.0) for y in (0.0, 1.0) for x in (0.0, 1.0)]
@@ -276,12 +276,6 @@ class Ports(Aligned):
         self.not_aligned("the scale 1.01", self.positions(1.01))
         self.assertIn("scale 1,", self.aligned(self.positions(1.01), "--rigid"))
 
-    def test_a_water_surface_moves(self):
-        self.port(lake((0.5, 0, 0.25)))
-        self.transform("-t", self.path("t.txt"))
-        found = self.moved_port()
-        self.near(found["normal"], times(TURN, (0, 0, 1)), 1e-12)
-        self.near(found["point_m"], moved((0.5, 0, 0.25), 2.5), 1e-12)
 
 
 class Volume(Transform):

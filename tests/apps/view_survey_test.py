@@ -128,18 +128,6 @@ class Folder(SurveyCase):
         self.assertNotIn("inside out", self.succeeds(*self.view("-m", seen)).stdout)
         self.assertIn(f"warning: {other}: the mesh is inside out", self.succeeds(*self.view("-m", other)).stdout)
 
-    def test_a_map_of_another_kind_is_refused(self):
-        """Their bands and pixels are the same."""
-        for expected, source, name in (
-                ("AXIALMVS_KIND change.sigma: must be map.sigma, as MapSurface writes it", "survey.change.sigma.tif",
-                 "map.sigma.tif"),
-                ("AXIALMVS_KIND map.sigma: must be change.sigma, as CompareSurveys writes it", "map.sigma.tif",
-                 "survey.change.sigma.tif")):
-            kept = self.at(name)
-            shutil.copy(self.made.path("work", source), self.path("work", name))
-            self.refuses_and_keeps(f"{name}: {expected}", *self.survey())
-            write(self.path("work", name), kept)
-
     def test_maps_and_changes_can_have_the_same_prefix(self):
         for name in os.listdir(self.work):
             if name.startswith("survey.change"):

@@ -3,6 +3,7 @@
 tiny_scene.py with a mesh (Wall), and the simulated close-up scene (Simulated), also densified in air and
 under water (Densified)."""
 
+import inspect
 import json
 import os
 import shutil
@@ -184,7 +185,8 @@ class Densified(Simulated):
     def setUpClass(cls):
         folder = new_folder(cls.addClassCleanup)
         programs = [os.path.join(BIN, name) for name in ("SimulateUnderwater", "InterfaceCOLMAP", "DensifyPointCloud")]
-        scenes.made((cls.make.__qualname__, *cls.SCENE, *QUICK), programs, folder, cls.make)
+        source = [inspect.getsource(one.make) for one in cls.__mro__ if "make" in vars(one)]
+        scenes.made((*source, *cls.SCENE, *QUICK), programs, folder, cls.make)
         cls.shared = folder
         cls.truth = cls.at("truth")
 
