@@ -2,7 +2,6 @@
 """Drives Debian's Chromium without a window, by the DevTools protocol over pipes: the standard
 library is enough."""
 
-import base64
 import json
 import os
 import shutil
@@ -140,7 +139,3 @@ class Browser:
         self.click(*self.value(f"""(() => {{
             const box = document.querySelector({json.dumps(selector)}).getBoundingClientRect();
             return [box.x + box.width / 2, box.y + box.height / 2]; }})()"""))
-
-    def screenshot(self):
-        """The picture of the page, the bytes of a PNG file."""
-        return base64.b64decode(self.send("Page.captureScreenshot")["data"])

@@ -6,10 +6,9 @@ headers without functions need no link. The arrows that CONTRIBUTING.md draws ar
 
 import pathlib
 import re
-import tempfile
 import unittest
 
-from programs import main
+from programs import main, new_folder
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -119,9 +118,7 @@ class WrongFolders(unittest.TestCase):
     """A tree of three libraries in which a file or a list of links is changed."""
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="axial_")
-        self.addCleanup(folder.cleanup)
-        self.root = pathlib.Path(folder.name)
+        self.root = pathlib.Path(new_folder(self.addCleanup))
         self.write("refractive/CMakeLists.txt", "target_link_libraries(axial_refractive INTERFACE "
                                                 "Eigen3::Eigen)\n")
         self.write("refractive/ray.h", "#include <cmath>\n")

@@ -7,13 +7,12 @@ import pathlib
 import shutil
 import struct
 import subprocess
-import tempfile
 import unittest
 import unittest.mock
 
 from colmap_databases import make_tables
 from pipeline_folder import InFolder, options_of, simulate
-from programs import grey_png, main
+from programs import grey_png, main, new_folder
 
 from axial_pipeline import colmap, matching, photographs
 from axial_pipeline.database import opened, rows_of
@@ -239,9 +238,7 @@ class WithColmap(InFolder):
 
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.scene = pathlib.Path(folder.name) / "scene"
+        cls.scene = pathlib.Path(new_folder(cls.addClassCleanup)) / "scene"
         simulate(cls.scene, "transect", 8, (160, 120))
 
     def matched(self, images, scale_from=""):

@@ -5,10 +5,9 @@ import json
 import pathlib
 import subprocess
 import sys
-import tempfile
 import unittest
 
-from programs import main
+from programs import main, new_folder
 
 PAPER = pathlib.Path(__file__).resolve().parents[2] / "docs" / "paper"
 sys.path.insert(0, str(PAPER))
@@ -133,9 +132,8 @@ class Page(unittest.TestCase):
     """Tables in a page, with the results of figure 3."""
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="axial_")
-        self.addCleanup(folder.cleanup)
-        self.folder, self.page = pathlib.Path(folder.name), pathlib.Path(folder.name, "page.md")
+        self.folder = pathlib.Path(new_folder(self.addCleanup))
+        self.page = self.folder / "page.md"
         errors = {warp: [0.25, 77.7, -1] for warp in simulations.SHOWN_WARPS}
         parts = {f"setup{k}": {"inputs": {}, "result": {"texels_across": 1, "errors": errors}} for k in (1, 2)}
         (self.folder / "figure3.json").write_text(json.dumps(results("figure3", parts)))

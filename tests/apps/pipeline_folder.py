@@ -10,11 +10,10 @@ import pathlib
 import struct
 import subprocess
 import sys
-import tempfile
 import unittest
 import unittest.mock
 
-from programs import BIN, grey_png, run
+from programs import BIN, grey_png, must, new_folder
 
 PIPELINE = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline"
 sys.path.insert(0, str(PIPELINE))
@@ -37,16 +36,13 @@ def reconstruct_command(*options, source=("--images", "images"), lens="lens", ho
 
 def simulate(folder, preset, views, size, *more, samples=1):
     """Writes photographs under water of a scene into `folder`. `size`: (width, height) [px]."""
-    made = run("SimulateUnderwater", "--preset", preset, "--views", views, "--width", size[0], "--height", size[1],
-               "--coarseness", 4, "--samples", samples, "--truth", 0, "--medium", "water", *more, "-o", folder)
-    assert made.returncode == 0, made.stderr
+    must("SimulateUnderwater", "--preset", preset, "--views", views, "--width", size[0], "--height", size[1],
+         "--coarseness", 4, "--samples", samples, "--truth", 0, "--medium", "water", *more, "-o", folder)
 
 
 class InFolder(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="axial_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name).resolve()
+        self.folder = pathlib.Path(new_folder(self.addCleanup))
 
     def write(self, name, content="mine"):
         path = self.folder / name

@@ -14,11 +14,12 @@ import unittest.mock
 from programs import BIN, ProgramTest, contents, main, must, new_folder, read, read_json, run, write
 
 PROGRAM = "ReproducePaper"
+STRIP = "completeness_transect_water_true"
 DOCUMENTS = pathlib.Path(__file__).resolve().parents[2] / "docs" / "paper" / "documents.py"
 
 
 def make_documents(python, *arguments):
-    subprocess.run([python, "-B", DOCUMENTS, *arguments], check=True)
+    return subprocess.run([python, "-B", DOCUMENTS, *arguments], check=True, capture_output=True, text=True).stdout
 
 
 def python_with_matplotlib():
@@ -334,6 +335,66 @@ class Figure3(ProgramTest):
         result = run(PROGRAM)
         self.assertEqual(result.returncode, 1)
         self.assertIn("sensitivity, need, all or completeness", result.stdout)
+
+
+class Completeness(unittest.TestCase):
+    """All cases check the results of one run on a small strip of images behind the port."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = new_folder(cls.addClassCleanup)
+        cls.work, cls.output = os.path.join(folder, "work"), os.path.join(folder, "results")
+        cls.completeness()
+
+    @classmethod
+    def completeness(cls, *more):
+        must(PROGRAM, "completeness", "--preset", "transect", "--scene-options", "--views 4 --width 256 --height 192 "
+             "--coarseness 5 --samples 1", "--seeds", "11", "-o", cls.output, "--work", cls.work, *more)
+
+    def results(self):
+        return read_json(self.output, STRIP + ".json")["parts"]["seed11"]["result"]
+
+    def test_the_table_is_printed_and_written(self):
+        made = make_documents(sys.executable, self.output, "--tables")
+        text = read(os.path.join(self.output, STRIP + ".md")).decode()
+        self.assertEqual(text, made)
+        for title in ("seen by 2 [%]", "by 3 [%]", "F", "mean [mm]", "gross [%]", "density", "CPU [s]"):
+            self.assertIn(title, text)
+        rows = [line for line in text.splitlines() if line.startswith("|")]
+        self.assertEqual([row.split("|")[1].strip() for row in rows],
+                         ["seed", "---", "11", "median"])
+
+    def test_most_of_the_ground_is_seen_by_two(self):
+        by_views = {one["least"]: one["places"] for one in self.results()["by_views"]}
+        self.assertGreater(by_views[2], 2 * by_views[3])
+        self.assertGreater(self.results()["cpu_seconds"], 0)
+        self.assertTrue(self.results()["strip"]["pieces"])
+
+    def test_scenes_stay_and_other_options_are_measured_anew(self):
+        before = self.results()
+        scene = [name for name in os.listdir(self.work) if name.startswith("transect-11-")]
+        self.assertEqual(len(scene), 1)
+        image = os.path.join(self.work, scene[0], "water", "0000.jpg")
+        time = os.stat(image).st_mtime_ns
+        self.completeness("--dense-options", "--number-views-fuse 2")
+        self.assertEqual(os.stat(image).st_mtime_ns, time)
+        two = self.results()["by_views"][0]["recall"][0]
+        self.completeness("--dense-options", "--number-views-fuse 3")
+        self.assertGreater(two, self.results()["by_views"][0]["recall"][0] + 0.2)
+        self.completeness()
+        self.assertEqual(self.results(), before)
+
+
+class WrongCompleteness(ProgramTest):
+    def test_is_refused(self):
+        self.refuses_each((PROGRAM, "completeness", "-o", self.path("a")), ("--medium ice: must be", "--medium", "ice"),
+                          ("--poses mine: must be", "--poses", "mine"), ("--seeds 1,x", "--seeds", "1,x"),
+                          ("--seeds names 3 twice", "--seeds", "3,4,3"),
+                          ("--tolerance -1: must be", "--tolerance", "-1"))
+
+    def test_options_of_its_own_are_without_effect_elsewhere(self):
+        self.assertIn("--medium: without effect", self.succeeds(
+            PROGRAM, "figure3", "--quick", "--medium", "air", "-o", self.path("a")).stdout)
 
 
 main()

@@ -3,11 +3,10 @@
 
 import os
 import subprocess
-import tempfile
 import unittest.mock
 
 import scenes
-from programs import BIN, ProgramTest, contents, main, read, run, write
+from programs import BIN, ProgramTest, contents, main, new_folder, read, run, write
 
 SCENE = ("--preset", "closeup", "--coarseness", "8", "--views", "2", "--width", "64", "--height", "48")
 
@@ -15,9 +14,7 @@ SCENE = ("--preset", "closeup", "--coarseness", "8", "--views", "2", "--width", 
 class SharedScenes(ProgramTest):
     def setUp(self):
         super().setUp()
-        kept = tempfile.TemporaryDirectory(prefix="axial_")
-        self.addCleanup(kept.cleanup)
-        replaced = unittest.mock.patch.object(scenes, "SCENES", kept.name)
+        replaced = unittest.mock.patch.object(scenes, "SCENES", new_folder(self.addCleanup))
         replaced.start()
         self.addCleanup(replaced.stop)
 

@@ -4,10 +4,9 @@
 
 import pathlib
 import re
-import tempfile
 import unittest
 
-from programs import main
+from programs import main, new_folder, write
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -77,12 +76,10 @@ class OptionsInLibraries(unittest.TestCase):
     """A tree of one library that names an option somewhere."""
 
     def expect(self, faults, name, text, declare_options=frozenset()):
-        with tempfile.TemporaryDirectory(prefix="axial_") as folder:
-            file = pathlib.Path(folder) / name
-            file.parent.mkdir(parents=True)
-            file.write_text(text, encoding="utf-8")
-            found = options_in_libraries(pathlib.Path(folder), set(declare_options))
-            self.assertEqual(len(found), faults, found)
+        folder = pathlib.Path(new_folder(self.addCleanup))
+        write(folder / name, text)
+        found = options_in_libraries(folder, set(declare_options))
+        self.assertEqual(len(found), faults, found)
 
     def test_a_message_with_an_option_is_a_fault(self):
         for text in ('fail("--mask-path {}: is no folder", x);', 'fail("{} (see --bit-depth)", x);',

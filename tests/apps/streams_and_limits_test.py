@@ -5,10 +5,9 @@ import os
 import re
 import struct
 import subprocess
-import tempfile
 
 import tiny_scene
-from programs import BIN, ProgramTest, contents, dead_process, files_below, main, read, run, write
+from programs import BIN, ProgramTest, contents, dead_process, files_below, main, new_folder, read, run, write
 from tiny_scene import TinyScene
 from worlds import Wall
 
@@ -91,9 +90,7 @@ class ManyObservations(ProgramTest):
 
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.work = folder.name
+        cls.work = new_folder(cls.addClassCleanup)
         image = os.path.join(cls.work, "a.png")
         write(image, tiny_scene.picture((0, 0, 0)))
         centres = [(0.01 * i, 0, 0) for i in range(40)]
