@@ -81,47 +81,15 @@ class Files(Exports):
         self.assertEqual(found["scene.ply"], read(self.at("work", "scene_dense.ply")))
         self.assertEqual(set(found), files_below(self.at("work", "pinholes")))
 
-    def test_what_an_earlier_export_alone_had_goes(self):
+    def test_an_earlier_export_survives_a_full_disk_and_a_damaged_list_is_named(self):
         work = self.copy("work")
-        write(os.path.join(work, "scene.geo.json"), geo_offset(*OFFSET))
         folder = self.export(work, "--fusion-mode", "-1")
-        first = contents(folder)
-        self.assertIn("scene.geo.json", first)
-        write(os.path.join(folder, "images", "notes.txt"), "mine\n")
-        write(os.path.join(folder, "depth0009.dmap"), "of another program\n")
-        write(os.path.join(folder, "depth0003.dmap"), "of another program\n")
-        os.remove(os.path.join(work, "scene.geo.json"))
-        for name in ("depth0001.dmap", "depth0003.dmap"):
-            os.remove(os.path.join(work, name))
-            os.remove(os.path.join(work, name + ".json"))
-
-        command = self.command(work, "--pinhole-export", "pinholes", "--fusion-mode", "-1")
         before = contents(folder)
+        command = self.command(work, "--pinhole-export", "pinholes", "--fusion-mode", "-1")
         self.assertEqual(run(*command, file_size_limit=20000).returncode, 1)
-        self.assertEqual(contents(folder), before)  # the earlier export survives
-        said = self.succeeds(*command).stdout
-        self.assertEqual(said.count("depth0003.dmap: was changed after the earlier export"), 1)
-        found = contents(folder)
-        self.assertEqual(found.pop("images/notes.txt"), b"mine\n")
-        for name in ("depth0009.dmap", "depth0003.dmap"):
-            self.assertEqual(found.pop(name), b"of another program\n")
-        shutil.rmtree(folder)
-        self.assertEqual(found, contents(self.export(work, "--fusion-mode", "-1")))
-        self.assertEqual(set(first) - set(found),
-                         {"scene.geo.json"} | {name for i in ("0001", "0003") for name in (
-                             f"images/{i}.jpg", f"images/{i}.mask.png", f"depth{i}.dmap",
-                             f"depth{i}.dmap.json")})
-
-    def test_a_list_of_an_earlier_export_that_is_none(self):
-        work = self.copy("work")
-        marker = os.path.join(work, "pinholes", "pinhole_export.json")
-        for wrong in ("", "[]", '{"files"'):
-            write(marker, wrong)
-            self.refuses("pinhole_export.json", *self.command(work, "--pinhole-export", "pinholes"))
-        write(os.path.join(work, "kept.txt"), "mine\n")
-        write(marker, json.dumps({"files": {"../kept.txt": "x", "/kept": 3, "none": "x"}}))
-        self.export(work)
-        self.assertEqual(read(os.path.join(work, "kept.txt")), b"mine\n")
+        self.assertEqual(contents(folder), before)
+        self.refuses_contents(os.path.join(folder, "pinhole_export.json"), command,
+                              *(("pinhole_export.json", wrong) for wrong in ("", "[]", '{"files"')))
 
     def test_images_without_a_map_stay_under_their_indices(self):
         work = self.copy("work", leave_out=("depth0001.dmap*",))
