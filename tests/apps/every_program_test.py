@@ -107,12 +107,19 @@ class CommandLine(Programs):
 
     def test_a_refused_command_leaves_no_folder(self):
         new = self.path("new", "deep", "out")
-        instead = {"-i": self.path("missing.mvs"), "-o": new, "--report": new}
+        write(self.path("a_file"), "")
         for command in self.commands():
             with self.subTest(command=command):
-                changed = [instead.get(before, word) for before, word in zip(command, command[1:])]
-                self.refuses_and_keeps("missing.mvs", command[0], *changed)
+                self.refuses_and_keeps("missing.mvs", *self.changed(command, {"-i": self.path("missing.mvs"), "-o": new,
+                                                                              "--report": new}))
                 self.assertFalse(os.path.exists(self.path("new")))
+                for folder in ("/proc", self.path("a_file")):
+                    self.refuses_and_keeps(folder, *self.changed(command, dict.fromkeys(
+                        ("-o", "--report", "--json"), os.path.join(folder, "out"))))
+
+    def changed(self, command, values):
+        """The command with these values of options."""
+        return [command[0], *(values.get(before, word) for before, word in zip(command, command[1:]))]
 
 
 class WrongMeshes(Programs):

@@ -29,18 +29,6 @@ class ForeignMaps(Densified):
         write(os.path.join(folder, "depth0003.dmap"), b"")  # of an unknown program
         self.assert_refused_and_kept(folder, "depth0003.dmap")
 
-    def test_are_told_from_ours_by_their_content(self):
-        folder = self.copy("air")
-        for i, name in enumerate(dmap_names()):
-            path = os.path.join(folder, name)
-            whole = read(path)
-            foreign = Dmap(whole)
-            foreign.depths = foreign.depths[:-4] + struct.pack("<f", 0.5 + i)
-            write(path, foreign.bytes())
-            self.assert_refused_and_kept(folder, name)
-            write(path, whole)
-        self.assertIn("depth maps exist already", self.said(folder))
-
     def test_are_overwritten_when_asked(self):
         for medium in ("air", "water"):
             folder = self.copy(medium, "_dense.ply", "depth0001.dmap.json")
@@ -309,12 +297,6 @@ class Uncertainty(Densified):
                 self.assertLess(calibration["rms"], 2)
                 self.assertGreater(calibration["within_1_2_3"][2], 0.93)
 
-    def test_a_point_of_one_map_is_of_unknown_worth(self):
-        folder = self.copy("air", "_dense.ply")
-        points = Ply(self.fused(folder, *self.ON, "--number-views-fuse", "1")).vertices
-        self.assertTrue(points)
-        for point in points:
-            self.assertEqual((point["error"][0], point["confidence"][0]), (0, 0))
 
 
 if __name__ == "__main__":

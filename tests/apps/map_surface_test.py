@@ -168,10 +168,6 @@ class FarFaces(MapTest):
         self.assertEqual(self.maps(), self.plain)
         return said
 
-    def test_a_vertex_that_no_face_uses(self):
-        vertices, faces = wall()
-        self.assertNotIn("warning", self.check_same_maps(vertices + [(1000, 1000, 1000)], faces))
-
     def test_a_face_that_no_camera_sees(self):
         vertices, faces = wall()
         corners, face = face_at(1000, 0, 1, len(vertices))

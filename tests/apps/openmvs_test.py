@@ -37,13 +37,6 @@ class Options(Densified):
         self.refuses("--archive-type 7", *self.command(folder, "--archive-type", "7"))
         self.refuses("--no-option-of-2-4", *self.command(folder, "--no-option-of-2-4", "1"))
 
-    def test_all_are_in_the_help(self):
-        said = run("DensifyPointCloud", "--help").stdout
-        for option in ("dense-config-file", "view-neighbors-file", "filter-point-cloud",
-                       "export-number-views", "estimate-scale", "tower-mode", "archive-type",
-                       "pointcloud-file", "log-file"):
-            self.assertIn("--" + option, said)
-
     def test_the_output_s_folder_is_made(self):
         folder = self.copy("air")
         self.said(folder, "-o", "new/folders/result.mvs")

@@ -166,18 +166,6 @@ class WithStandIns(StandIns):
         self.write("out/scene_dense_backup.ply", "")
         self.succeeds("--earlier", "out/scene_dense_backup.ply", "--without", "map,page")
 
-    def test_a_matcher_without_its_input_is_refused_at_once(self):
-        for options, said in (
-                (["spatial"], "--matcher spatial: none of the photographs in "
-                 f"{self.folder / 'images'} have a GPS position (latitude, longitude and altitude); "
-                 "give --scale-from positions:FILE or choose another --matcher"),
-                (["vocabulary"], "--matcher vocabulary: needs --vocabulary FILE, a vocabulary tree "
-                 "for COLMAP (docs/photographs.md)"),
-                (["sequential", "--vocabulary", "lens"],
-                 "--vocabulary lens: is only for --matcher vocabulary")):
-            ended = self.ended("--matcher", *options)
-            self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (1, "", f"reconstruct: {said}\n"))
-        self.assertFalse((self.folder / "out").exists())
 
 
 if __name__ == "__main__":
