@@ -18,6 +18,8 @@ from programs import BIN, grey_png, must, new_folder
 PIPELINE = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline"
 sys.path.insert(0, str(PIPELINE))
 
+# Imports what the commands import, so that CTest keeps all of it compiled (PYTHONPYCACHEPREFIX).
+from axial_pipeline import colmap_model, reconstruct  # noqa: E402, F401
 from axial_pipeline.reconstruct_options import options  # noqa: E402
 
 
