@@ -20,6 +20,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parse_number.h"
+#include "base/split.h"
 
 namespace axial::apps {
 namespace {
@@ -107,13 +108,6 @@ constexpr std::array kTitlesWithoutEffect{"Min Views Filter",     "Min Views Fil
 
 bool contains(std::span<const char* const> titles, std::string_view title) {
   return std::ranges::find(titles, title) != titles.end();
-}
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r";
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
 // Whether the line sets nothing.

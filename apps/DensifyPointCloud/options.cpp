@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/option_values.h"
 #include "base/output_name.h"
+#include "base/tiling.h"
 #include "base/unused_input.h"
 #include "base/version.h"
 #include "dense_config.h"
@@ -24,6 +25,7 @@ struct Raw {
   densify::NeighbourListsJob lists;
   densify::ExportJob points;
   std::string tile;
+  std::size_t fusion_tiles = 1;
   bool refractive = false;
   std::filesystem::path dense_config;
   int fusion_mode = 0, tower_mode = 0;
@@ -146,13 +148,13 @@ void declare_fusion(OptionList& list, Raw& raw, densify::Options& settings) {
       .range(-1e6, 1e6)
       .add_with_default("crop-to-roi", &settings.fusion.crop_to_roi,
                         "crop the cloud to the region of interest")
-      .add_with_default("fusion-tiles", &settings.fusion.tiles,
+      .add_with_default("tiles", &settings.fusion.tiles,
                         "fuse in this number of tiles, one after the other; tiles that exist "
-                        "already (see --tile) are used")
-      .range(1, densify::kMostTiles)
+                        "already (see --tile) are used; --fusion-tiles is the same option")
+      .range(1, kMostTiles)
       .add("tile", &raw.tile,
            "I/N: make only tile I of N from complete depth maps, write it to "
-           "<output>.tileI-N.ply and quit; a run with --fusion-tiles N joins the tiles");
+           "<output>.tileI-N.ply and quit; a run with --tiles N joins the tiles");
 }
 
 void declare_points(OptionList& list, Raw& raw, densify::Options& settings) {
@@ -269,13 +271,20 @@ densify::Job job_of(const Raw& raw, const ParsedOptions& parsed) {
   return densify::WholeRun();
 }
 
-// Takes --tile: "I/N" is one of the tiles of --fusion-tiles N.
-void take_tile(const std::string& text, const ParsedOptions& parsed, densify::Options& settings) {
-  const auto [part, count] = parse_fraction("--tile", text, densify::kMostTiles);
-  if (given(parsed, "fusion-tiles") && settings.fusion.tiles != count)
-    fail("--tile {}: contradicts --fusion-tiles {}", text, settings.fusion.tiles);
-  settings.fusion.tiles = count;
-  settings.job = densify::TileJob{part};
+// Takes --fusion-tiles, the earlier name of --tiles, and --tile.
+void take_tiling(const Raw& raw, ParsedOptions& parsed, densify::Options& settings) {
+  std::size_t& tiles = settings.fusion.tiles;
+  if (given(parsed, "fusion-tiles")) {
+    if (given(parsed, "tiles") && tiles != raw.fusion_tiles)
+      fail("--fusion-tiles {}: contradicts --tiles {}", raw.fusion_tiles, tiles);
+    tiles = raw.fusion_tiles;
+    parsed.given.insert("tiles");
+  }
+  if (!settings.job_as<densify::TileJob>()) return;
+  Tiling tiling{tiles};
+  take_tile(raw.tile, parsed, tiling);
+  tiles = tiling.count;
+  settings.job = densify::TileJob{*tiling.tile};
 }
 
 // Fills the settings from the values of the options.
@@ -299,7 +308,7 @@ void convert(const Raw& raw, Options& options) {
   settings.max_threads = common.max_threads;
   settings.survey.files.name_of = options.parsed.option_of;
   settings.job = job_of(raw, options.parsed);
-  if (settings.job_as<densify::TileJob>()) take_tile(raw.tile, options.parsed, settings);
+  take_tiling(raw, options.parsed, settings);
   densify::check(settings);
 }
 
@@ -332,6 +341,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   program.visible.add_not_built("sub-scene-area", "0", {"0", "0.0"})
       .add_not_built("sample-mesh", "0", {"0", "0.0"})
       .add_not_built("cuda-device", "-1", {"-1", "-2"});
+  program.hidden.add("fusion-tiles", &raw.fusion_tiles, "the same as --tiles").range(1, kMostTiles);
   for (const char* name :
        {"mesh-file", "export-roi-file", "import-roi-file", "export-depth-maps-name"})
     program.hidden.add_not_built(name, "", {""});

@@ -57,7 +57,7 @@ void warn_of_options_without_effect(const Options& options) {
   if (const auto* job = settings.job_as<densify::StageJob>()) {
     if (job->parts > 0) warn_of(options, {"report-file"}, "with --part, which checks nothing");
     warn_of(options, kFusion, "with --until, which makes no cloud");
-    warn_of(options, {"fusion-tiles"}, "with --until, which makes no cloud");
+    warn_of(options, {"tiles"}, "with --until, which makes no cloud");
   }
   if (settings.job_as<densify::PlanJob>())
     warn_of(options, {"report-file", "overwrite-dmaps", "remove-dmaps"}, "with --plan");

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 // Several runs may make tiles of one mesh at the same time.
 LockUse lock_use(const Options& options) {
-  return options.tile > 0 ? LockUse::shared : LockUse::alone;
+  return options.tiling.tile ? LockUse::shared : LockUse::alone;
 }
 
 survey::Survey open(const Options& options) {
@@ -107,14 +107,14 @@ int run(int argc, char** argv) {
   const OutputLock lock = lock_output(options.output, lock_use(options));
   const survey::Survey scene = open(options);
   options.reconstruct.max_bytes = memory_limit(options.survey.memory.megabytes, "--max-memory");
-  if (options.tile > 0) {
+  if (options.tiling.tile) {
     make_tile(scene, options, context);
     return 0;
   }
   bool keep = options.close_unseen;
-  Mesh mesh = options.tiles > 1      ? join_tiles(scene, options, context)
-              : options.mesh.empty() ? reconstruct(scene, options, context)
-                                     : clean_given(scene, options, keep, context);
+  Mesh mesh = options.tiling.count > 1 ? join_tiles(scene, options, context)
+              : options.mesh.empty()   ? reconstruct(scene, options, context)
+                                       : clean_given(scene, options, keep, context);
   return_freed_memory();
   mesh = without_unseen(std::move(mesh), scene, options, keep, context);
   write(options.output, mesh, scene.frame, context);

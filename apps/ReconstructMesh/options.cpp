@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/fraction.h"
 #include "base/option_values.h"
 #include "base/output_name.h"
 #include "base/version.h"
@@ -34,7 +33,7 @@ void declare_io(OptionList& list, Raw& raw, Options& options) {
                         "--output-file decides")
       .sets("type")
       .add_max_memory(&options.survey.memory.megabytes)
-      .add_with_default("tiles", &options.tiles,
+      .add_with_default("tiles", &options.tiling.count,
                         "make the mesh in this many parts, so that less memory is needed")
       .range(1, kMostTiles)
       .add("tile", &raw.tile,
@@ -111,17 +110,11 @@ void refuse_other_triangles(const std::string& option, const Options& options) {
 }
 
 void take_tiles(const Raw& raw, Options& options) {
-  std::string option = fmt::format("--tiles {}", options.tiles);
-  if (given(options.parsed, "tile")) {
-    const Fraction fraction = parse_fraction("--tile", raw.tile, kMostTiles);
-    option = "--tile " + raw.tile;
-    if (fraction.count == 1) fail("{}: there must be at least 2 tiles", option);
-    if (given(options.parsed, "tiles") && options.tiles != fraction.count)
-      fail("{}: contradicts --tiles {}", option, options.tiles);
-    options.tile = fraction.part;
-    options.tiles = fraction.count;
-  }
-  if (options.tiles > 1 || options.tile > 0) refuse_other_triangles(option, options);
+  Tiling& tiling = options.tiling;
+  if (given(options.parsed, "tile")) take_tile(raw.tile, options.parsed, tiling);
+  const std::string option = text_of(tiling, options.parsed.option_of);
+  if (tiling.tile && tiling.count == 1) fail("{}: there must be at least 2 tiles", option);
+  if (tiling.count > 1) refuse_other_triangles(option, options);
 }
 
 // Warns of valid options that have no effect.

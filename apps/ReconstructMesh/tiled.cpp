@@ -2,7 +2,6 @@
 #include "tiled.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 
@@ -12,6 +11,7 @@
 #include "base/output_name.h"
 #include "base/parse_number.h"
 #include "base/version.h"
+#include "io/artifacts/artifact.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/lenses.h"
 #include "io/openmvs/point_source.h"
@@ -27,18 +27,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kPortion = 1 << 16;  // [points]
 
 fs::path tile_folder(const Options& options) {
-  return fs::path(options.output).replace_extension(fmt::format(".tiles{}", options.tiles));
-}
-
-// Adds size and time of change. The content of a large cloud is not read for each tile.
-void add_state(const fs::path& file, Fingerprint& print) {
-  struct stat found {};
-  if (file.empty() || ::stat(file.c_str(), &found) != 0) {
-    print.add("no file");
-    return;
-  }
-  for (const auto number : {found.st_size, found.st_mtim.tv_sec, found.st_mtim.tv_nsec})
-    print.add(static_cast<std::uint64_t>(number));
+  return fs::path(options.output).replace_extension(fmt::format(".tiles{}", options.tiling.count));
 }
 
 void add(const mesh::ReconstructOptions& options, Fingerprint& print) {
@@ -61,11 +50,11 @@ mesh::TileRun run_of(const Options& options) {
   const fs::path& scene = options.survey.files.scene;
   for (const fs::path& file : {scene, cloud_file(options), io::housing_file(options.survey.files),
                                io::lenses_beside(scene), io::geo_offset_beside(scene)})
-    add_state(file, print);
+    if (!io::add_state(print, file)) print.add("no file");
   add(options.reconstruct, print);
   print.add(options.roi_border).add(static_cast<std::uint64_t>(options.survey.files.ports));
   const mesh::CleanOptions& clean = options.reconstruct.clean;
-  mesh::TileRun run{options.tiles, tile_folder(options), print.hex()};
+  mesh::TileRun run{options.tiling.count, tile_folder(options), print.hex()};
   // A mean edge is 3 to 4 pixels long. A piece that is not spurious must be seen as such from each
   // tile that has a part of it, and a smoothing step has effects two edges away.
   run.margin = std::max(run.margin, 7.5 * clean.spurious) + 7.5 * clean.smooth;
@@ -101,11 +90,11 @@ mesh::CloudSource source_of(const io::SceneWithCameras& scene, const Options& op
 
 void make_tile(const io::SceneWithCameras& scene, const Options& options, const Context& context) {
   naming(named_source(options), [&] {
-    mesh::reconstruct_tile(options.tile - 1, source_of(scene, options), scene.scene,
+    mesh::reconstruct_tile(*options.tiling.tile - 1, source_of(scene, options), scene.scene,
                            options.reconstruct, run_of(options), context);
   });
-  context.info("{}: tile {} of {} is complete", tile_folder(options).string(), options.tile,
-               options.tiles);
+  context.info("{}: tile {} of {} is complete", tile_folder(options).string(), *options.tiling.tile,
+               options.tiling.count);
 }
 
 Mesh join_tiles(const io::SceneWithCameras& scene, const Options& options, const Context& context) {

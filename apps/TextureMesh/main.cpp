@@ -8,10 +8,11 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/naming.h"
-#include "base/other_tiles.h"
 #include "base/output_lock.h"
 #include "base/parallel.h"
+#include "base/tiling.h"
 #include "belong/surface_check.h"
+#include "cloud/tiles.h"
 #include "geometry/seen_part.h"
 #include "io/openmvs/point_source.h"
 #include "mesh/clean.h"
@@ -54,8 +55,7 @@ Mesh simplified(const Settings& settings, Mesh mesh) {
 // The output of a tile, with the extension .mvs. It is that of the run if there is one tile.
 fs::path output_of(const Settings& settings, std::size_t tile) {
   if (settings.texture.tiles == 1) return settings.output;
-  return fs::path(settings.output)
-      .replace_extension(fmt::format(".tile{}-{}.mvs", tile + 1, settings.texture.tiles));
+  return tile_file(settings.output, tile + 1, settings.texture.tiles, ".mvs");
 }
 
 // Error if a file of a tile's mesh with `textures` textures is an input or cannot be written.
@@ -163,13 +163,12 @@ int run(int argc, char** argv) {
   survey.add_inputs(io::files_of_mesh(settings.mesh));
   for (std::size_t tile = 0; tile < settings.texture.tiles; ++tile)
     keep_inputs(settings, survey, tile, 1);
-  const auto& region = survey.scene.region;
-  const Eigen::Matrix3d axes = region ? region->rotation : Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d axes = cloud::tile_axes(survey.scene);
   survey.scene = {};
   return_freed_memory();
   check_sides(settings, survey, mesh, context);
   texture_and_write(settings, survey, std::move(mesh), axes, context);
-  warn_of_other_tiles(other_tiles(settings.output, settings.texture.tiles));
+  warn_of_other_tiles(other_tiles(settings.output, settings.texture.tiles), context);
   return 0;
 }
 

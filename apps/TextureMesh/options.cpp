@@ -6,6 +6,7 @@
 #include "base/option_values.h"
 #include "base/output_name.h"
 #include "base/split.h"
+#include "base/tiling.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"
 #include "io/openmvs/scene_files.h"
@@ -57,7 +58,7 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
       .add_with_default("tiles", &settings.texture.tiles,
                         "make this number of meshes, <output>.tileI-N, one after the other, in "
                         "less memory; their colours agree where they meet")
-      .range(1, texture::kMostTiles)
+      .range(1, kMostTiles)
       .add_with_default("resolution-level", &settings.survey.resolution.level,
                         "how many times the images are halved")
       .range(0, 16)

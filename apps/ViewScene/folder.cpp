@@ -12,8 +12,8 @@
 #include "base/base64.h"
 #include "base/error.h"
 #include "base/subprocess.h"
+#include "io/artifacts/written_files.h"
 #include "io/bytes/json.h"
-#include "io/bytes/written_files.h"
 
 namespace axial::apps {
 namespace {
@@ -32,16 +32,9 @@ void write(const fs::path& path, std::string_view text, std::ios::openmode mode)
 
 // The list of the files that ViewScene wrote into `folder`. Empty if there is none.
 nlohmann::json list_of(const fs::path& folder) {
-  std::error_code error;
-  if (!fs::is_regular_file(folder / kList, error)) return {};
-  try {
-    nlohmann::json list = io::read_json(folder / kList);
-    if (list.is_object() && list.contains("viewer.js") && list.contains("data/scene.js"))
-      return list;
-  } catch (const Error&) {
-    // Another program's file.
-  }
-  return {};
+  const nlohmann::json list = io::read_object(folder / kList);
+  const bool is_ours = list.contains("viewer.js") && list.contains("data/scene.js");
+  return is_ours ? list : nlohmann::json();
 }
 
 }  // namespace

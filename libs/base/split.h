@@ -20,4 +20,13 @@ inline std::vector<std::string_view> split(std::string_view text, char separator
   return words;
 }
 
+inline constexpr std::string_view kBlanks = " \t\r\n\v\f";
+
+// `text` without the blanks at its beginning and end.
+inline std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
 }  // namespace axial

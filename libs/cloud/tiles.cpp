@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "scene/camera_model.h"
 
@@ -116,6 +115,10 @@ Tile grown(const Tile& tile, double margin) {
   larger.low.array() -= margin;
   larger.high.array() += margin;
   return larger;
+}
+
+Eigen::Matrix3d tile_axes(const Scene& scene) {
+  return scene.region ? scene.region->rotation : Eigen::Matrix3d::Identity();
 }
 
 std::vector<Tile> make_tiles(std::span<const Eigen::Vector3f> points, std::size_t count,

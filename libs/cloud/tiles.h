@@ -8,7 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "base/order_statistics.h"
 #include "scene/depth_map.h"
+#include "scene/scene.h"
 
 namespace axial::cloud {
 
@@ -30,6 +32,18 @@ struct Tile {
 
 // The tile with each side moved outwards by `margin` [world units, 0 or more].
 Tile grown(const Tile& tile, double margin);
+
+// The axes of the tiles of a scene (rows): those of its region of interest, or of the world without
+// a region.
+Eigen::Matrix3d tile_axes(const Scene& scene);
+
+// The margin of a tile from the sizes of which a margin is a multiple, such as the widths of pixels
+// at the points of the tile: `factor` times their 95th percentile. 0 without sizes.
+template <class T>
+double tile_margin(double factor, const std::vector<T>& sizes) {
+  if (sizes.empty()) return 0;
+  return factor * static_cast<double>(value_at_place(sizes, (sizes.size() - 1) * 19 / 20));
+}
 
 // Divides space into `count` tiles with about equal numbers of `points` [world]. Each place belongs
 // to exactly one tile: outer tiles reach to infinity. The tiles have the axes `rotation` (its

@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/output_lock.h"
 #include "base/parallel.h"
+#include "base/tiling.h"
 #include "densify/agreement_check.h"
 #include "densify/cloud_exports.h"
 #include "densify/depth_stage.h"
@@ -81,11 +82,9 @@ std::vector<std::size_t> images_of_part(const Project& project) {
 }
 
 void remove_depth_maps(const Project& project) {
-  for (const std::size_t image : project.references) {
-    const fs::path file = depth_map_path(project, image);
-    fs::remove(file);
-    fs::remove(file.string() + ".json");
-  }
+  for (const std::size_t image : project.references)
+    for (const fs::path& file : io::with_side_file(depth_map_path(project, image)))
+      fs::remove(file);
 }
 
 // A run that makes or uses depth maps, after all checks and before the first map is made.
@@ -179,8 +178,8 @@ struct JobRun {
     survey::ImageStore images = run.images();
     const std::size_t points = write_tile({run.project, run.existing, run.plan, images, context},
                                           options.fusion, options.output, job.tile);
-    return {Result::tile, tile_file(options.output.scene, job.tile, options.fusion.tiles), points,
-            run.project.references.size(), true};
+    return {Result::tile, tile_file(options.output.scene, job.tile, options.fusion.tiles, ".ply"),
+            points, run.project.references.size(), true};
   }
 
   Report operator()(const WholeRun&) const {
@@ -197,7 +196,7 @@ struct JobRun {
           options.fusion.min_views, options.name_of("fusion.min_views"));
     if (!options.output.pinhole_export.empty())
       export_pinholes(run.project, options.output, run.existing, run.plan.exports, context);
-    if (fuse) remove_tiles(options.output.scene, options.fusion.tiles);
+    if (fuse) remove_tiles(options.output.scene, options.fusion.tiles, context);
     if (fuse && options.fusion.remove_dmaps) remove_depth_maps(run.project);
     return {fuse ? Result::dense_cloud : Result::sparse_cloud, ply, points,
             run.project.references.size(), all_pinholes(run.project)};

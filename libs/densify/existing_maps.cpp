@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "densify/map_stages.h"
 #include "scene/resolution.h"
 
 namespace axial::densify {
@@ -74,10 +75,6 @@ CameraModel camera_of_map(const Project& project, std::size_t image, DmapOrigin 
   return camera;
 }
 
-bool is_ours(const io::DmapStatus& map, const std::string& made_from) {
-  return map.origin == DmapOrigin::ours && map.made_from == made_from;
-}
-
 void leave_out(const cv::Mat1b& mask, DepthMap& map) {
   cv::Mat1b left_out;
   cv::compare(mask, 0, left_out, cv::CMP_EQ);
@@ -106,13 +103,14 @@ DepthMap read_final_map(const Project& project, const ExistingMaps& maps, std::s
 }
 
 std::string final_made_from(const Project& project, const MatchOptions& options) {
-  return project.fingerprint + " " + stage_names(options).back();
+  return mark_of_stage(project.fingerprint, stage_names(options).back());
 }
 
 bool are_complete(const Project& project, const MatchOptions& options, const ExistingMaps& maps) {
   const std::string wanted = final_made_from(project, options);
-  return std::ranges::all_of(
-      project.references, [&](std::size_t image) { return is_ours(maps.states[image], wanted); });
+  return std::ranges::all_of(project.references, [&](std::size_t image) {
+    return maps.states[image].is_ours_from(wanted);
+  });
 }
 
 void require_final_maps(const Project& project, const MatchOptions& options,
@@ -120,7 +118,7 @@ void require_final_maps(const Project& project, const MatchOptions& options,
   const std::string wanted = final_made_from(project, options);
   for (const std::size_t image : project.references) {
     const io::DmapStatus& map = maps.states[image];
-    if (is_ours(map, wanted)) continue;
+    if (map.is_ours_from(wanted)) continue;
     const char* fault = map.origin == DmapOrigin::none      ? "does not exist"
                         : map.origin == DmapOrigin::damaged ? "is damaged"
                         : map.origin == DmapOrigin::foreign

@@ -11,6 +11,7 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/tiling.h"
 #include "cloud/colors.h"
 #include "cloud/crop.h"
 #include "cloud/normals.h"
@@ -35,7 +36,9 @@ struct FusionRun : Run {
   const OutputOptions& output;
 
   fs::path ply() const { return fs::path(output.scene).replace_extension(".ply"); }
-  fs::path tile(std::size_t tile) const { return tile_file(output.scene, tile, options.tiles); }
+  fs::path tile(std::size_t tile) const {
+    return tile_file(output.scene, tile, options.tiles, ".ply");
+  }
   io::PlyPlacement placement() const { return {project.frame, output.double_precision}; }
 
   // A writer of clouds whose colours and normals are not estimated from the whole cloud.
@@ -148,15 +151,14 @@ class TileRun {
 
   // Makes the tile (from 1) unless its file is there already.
   CloudCounts make(std::size_t tile) const {
-    const fs::path ply = run_.tile(tile);
-    const std::string stamp = made_from(tile);
-    if (const auto counts = finished_tile(ply, stamp)) {
-      run_.context.info("{}: exists already, {} points", ply.string(), counts->points);
+    const io::Artifact cloud{run_.tile(tile), made_from(tile)};
+    if (const auto counts = finished_tile(cloud)) {
+      run_.context.info("{}: exists already, {} points", cloud.file.string(), counts->points);
       return *counts;
     }
-    remove_tile(ply);
-    const CloudCounts counts = fuse(tile, ply);
-    finish_tile(ply, stamp, counts, parts_[tile - 1].tile);
+    io::remove_with_side_file(cloud.file);
+    const CloudCounts counts = fuse(tile, cloud.file);
+    finish_tile(cloud, counts, parts_[tile - 1].tile);
     return counts;
   }
 
@@ -215,7 +217,7 @@ class TileRun {
       fail(
           "{} {}: tile {} of {} needs {} views, more than expected: allow more memory or use {} {}",
           run_.project.name_of("max_memory"), run_.project.options.memory.megabytes, tile,
-          parts_.size(), needed, run_.project.name_of("fusion_tiles"), 2 * parts_.size());
+          parts_.size(), needed, run_.project.name_of("tiles"), 2 * parts_.size());
     return run_.plan.fused_maps - fewer;
   }
 

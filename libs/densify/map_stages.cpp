@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <set>
-#include <system_error>
 
 #include "base/error.h"
 #include "base/first_error.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "io/artifacts/artifact.h"
 #include "picture/dmap_pictures.h"
 
 namespace axial::densify {
@@ -71,22 +71,21 @@ class Runner {
   }
 
   std::string made_from(std::size_t stage) const {
-    return run_.fingerprint + " " + stages_[stage].name;
+    return mark_of_stage(run_.fingerprint, stages_[stage].name);
   }
 
   // Whether the file existed before this run: a stage asks before it writes.
   bool finished(std::size_t stage, std::size_t image) const {
-    if (is_last(stage))
-      return run_.existing[image].origin == io::DmapOrigin::ours &&
-             run_.existing[image].made_from == made_from(stage);
-    return io::dmap_made_from(path(stage, image)) == made_from(stage);
+    const io::DmapStatus status =
+        is_last(stage) ? run_.existing[image] : io::dmap_status(path(stage, image));
+    return status.is_ours_from(made_from(stage));
   }
 
   // Whether a later stage is complete. In a first run, the first file that is looked up is missing.
   bool is_superseded(std::size_t stage) const {
     for (std::size_t later = stage + 1; later < stages_.size(); ++later) {
       const auto there = [&](std::size_t image) {
-        return io::dmap_made_from(path(later, image)) == made_from(later);
+        return io::dmap_status(path(later, image)).is_ours_from(made_from(later));
       };
       if (run_.all_images.empty() || !std::ranges::all_of(run_.all_images, there)) continue;
       context_.info("All {} depth maps exist already, of the later stage {}",
@@ -177,12 +176,7 @@ class Runner {
   }
 
   void remove_stage(std::size_t stage) const {
-    for (const std::size_t image : run_.images) {
-      const fs::path file = path(stage, image);
-      std::error_code ignored;
-      fs::remove(file, ignored);
-      fs::remove(file.string() + ".json", ignored);
-    }
+    for (const std::size_t image : run_.images) io::remove_with_side_file(path(stage, image));
   }
 
   std::span<const Stage> stages_;
@@ -194,6 +188,10 @@ class Runner {
 
 PreviousMaps::PreviousMaps(ReadMap read, bool whole, std::size_t capacity)
     : read_(std::move(read)), cache_(for_cache(read_, whole), capacity) {}
+
+std::string mark_of_stage(const std::string& fingerprint, const std::string& stage) {
+  return fingerprint + " " + stage;
+}
 
 void run_stages(std::span<const Stage> stages, const StageRun& run, const Context& context) {
   Runner(stages, run, context).run();

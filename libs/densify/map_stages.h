@@ -86,6 +86,10 @@ struct StageRun {
   std::size_t most_stages = std::numeric_limits<std::size_t>::max();
 };
 
+// The text `made_from` (io/openmvs/dmap.h) of the maps of a stage. `fingerprint`: of all their
+// input.
+std::string mark_of_stage(const std::string& fingerprint, const std::string& stage);
+
 // Runs the stages one after the other. The maps of the last of `stages` are the result, in the
 // files `run.final_file`; `run.most_stages` can end the run earlier. Precondition: there is at
 // least one stage.

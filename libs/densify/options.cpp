@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/tiling.h"
 
 namespace axial::densify {
 namespace {
@@ -35,12 +36,10 @@ void check_tiles(const Options& options) {
   const FusionOptions& fusion = options.fusion;
   const TileJob* job = options.job_as<TileJob>();
   if (!job && fusion.tiles == 1) return;
-  const std::string option =
-      job ? fmt::format("{} {}/{}", options.name_of("tile"), job->tile, fusion.tiles)
-          : fmt::format("{} {}", options.name_of("fusion_tiles"), fusion.tiles);
-  if (fusion.tiles < 1 || fusion.tiles > kMostTiles ||
-      (job && (job->tile < 1 || job->tile > fusion.tiles)))
-    fail("{}: must be from 1 to {}", option, job ? fusion.tiles : kMostTiles);
+  const Tiling tiling{fusion.tiles, job ? std::optional(job->tile) : std::nullopt};
+  const SettingNames& name_of = options.survey.files.name_of;
+  check(tiling, name_of);
+  const std::string option = text_of(tiling, name_of);
   if (!fusion.fuse || writes_scene_data(options))
     fail("{}: needs fusion, which this run does not make", option);
   const auto refuse = [&](bool given, const std::string& other) {

@@ -53,14 +53,12 @@ struct MatchOptions : depth::PatchMatchOptions {
   Pictures pictures = Pictures::none;
 };
 
-inline constexpr std::size_t kMostTiles = 1000;
-
 // The cloud. The fields `normals`, `part`, max_maps and max_loads have no effect: estimate_normals
 // replaces `normals`, the tiles replace `part`, and the memory plan replaces the other two.
 struct FusionOptions : cloud::FuseOptions {
   bool fuse = true;  // false: the sparse points become the cloud
   // The number of tiles in which the maps are fused, one after the other (tiles.h), from 1 to
-  // kMostTiles. 1: the maps are fused in one piece.
+  // kMostTiles (base/tiling.h). 1: the maps are fused in one piece.
   std::size_t tiles = 1;
   unsigned estimate_colors = 2;   // 0: no, 1: from the nearest view, 2: from all views of a point
   unsigned estimate_normals = 2;  // 0: no, 1: from the cloud, 2: from the depth maps

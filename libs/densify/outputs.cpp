@@ -5,7 +5,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "densify/tiles.h"
+#include "base/tiling.h"
+#include "io/artifacts/artifact.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/housing.h"
 #include "io/openmvs/scene_files.h"
@@ -26,7 +27,8 @@ std::vector<fs::path> cloud_outputs(const Options& options) {
   const auto* job = options.job_as<TileJob>();
   const std::size_t last = job ? job->tile : options.fusion.tiles;
   for (std::size_t tile = job ? job->tile : 1; tile <= last; ++tile)
-    std::ranges::copy(files_of_tile(scene, tile, options.fusion.tiles), std::back_inserter(files));
+    std::ranges::copy(io::with_side_file(tile_file(scene, tile, options.fusion.tiles, ".ply")),
+                      std::back_inserter(files));
   files.insert(files.end(), {scene, cloud_file(scene), io::lenses_beside(scene)});
   return files;
 }
@@ -35,7 +37,7 @@ std::vector<fs::path> depth_outputs(const Project& project, bool pictures) {
   std::vector<fs::path> files;
   for (const std::size_t image : project.references) {
     const fs::path map = depth_map_path(project, image);
-    files.insert(files.end(), {map, map.string() + ".json"});
+    std::ranges::copy(io::with_side_file(map), std::back_inserter(files));
     for (const char* picture : {".png", ".normal.png", ".confidence.png"})
       if (pictures) files.push_back(fs::path(map).replace_extension(picture));
   }

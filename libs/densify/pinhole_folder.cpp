@@ -10,8 +10,8 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_extension.h"
+#include "io/artifacts/written_files.h"
 #include "io/bytes/json.h"
-#include "io/bytes/written_files.h"
 #include "io/colmap/colmap_export.h"
 #include "io/images/masks.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tiles in which a cloud is fused, and their files. The tiles follow from the sparse cloud
-// alone, so that runs on several machines divide the scene in the same way. The cloud of a tile
-// (.ply) has a side file (.json), which says from what the tile was made.
+// alone, so that runs on several machines divide the scene in the same way. The cloud of a tile is
+// the file tile_file() of base/tiling.h, with a mark in its side file.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +12,7 @@
 
 #include "cloud/fuse.h"
 #include "densify/project.h"
+#include "io/artifacts/artifact.h"
 
 namespace axial::densify {
 
@@ -49,32 +50,18 @@ struct CloudCounts {
   }
 };
 
-// The file of tile `tile` (from 1) of `tiles` tiles of the cloud of the scene `output`:
-// <output>.tileI-N.ply. Its side file has ".json" added to the name.
-std::filesystem::path tile_file(const std::filesystem::path& output, std::size_t tile,
-                                std::size_t tiles);
+// Writes the mark (io/artifacts/artifact.h) of the cloud of a tile, which is complete. The mark
+// also tells the box of the tile, for people and tests: rotation (row by row), low and high, with
+// null for a side at infinity.
+void finish_tile(const io::Artifact& cloud, const CloudCounts& counts, const cloud::Tile& tile);
 
-// The cloud of a tile and its side file.
-std::vector<std::filesystem::path> files_of_tile(const std::filesystem::path& output,
-                                                 std::size_t tile, std::size_t tiles);
-
-// Writes the side file of the cloud `ply`, which is complete. `made_from`: a text that identifies
-// the tile's inputs and settings. The side file also tells the box of the tile, for people and
-// tests: rotation (row by row), low and high, with null for a side at infinity.
-void finish_tile(const std::filesystem::path& ply, const std::string& made_from,
-                 const CloudCounts& counts, const cloud::Tile& tile);
-
-// The numbers of points of a tile. Empty if the cloud or its side file is missing or damaged, or if
-// the tile was made from something else.
-std::optional<CloudCounts> finished_tile(const std::filesystem::path& ply,
-                                         const std::string& made_from);
-
-// Removes the cloud and its side file.
-void remove_tile(const std::filesystem::path& ply);
+// The numbers of points of a tile. Empty if the cloud or its mark is missing or damaged, or if the
+// tile was made from something else.
+std::optional<CloudCounts> finished_tile(const io::Artifact& cloud);
 
 // Removes the tiles of the scene `output`, whose cloud is complete: its `tiles` tiles, and those of
-// other numbers of tiles whose side file tells that this program wrote them and that nobody changed
+// other numbers of tiles whose mark tells that this program wrote them and that nobody changed
 // them. Warns of other clouds with the name of a tile.
-void remove_tiles(const std::filesystem::path& output, std::size_t tiles);
+void remove_tiles(const std::filesystem::path& output, std::size_t tiles, const Context& context);
 
 }  // namespace axial::densify

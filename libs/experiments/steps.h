@@ -4,6 +4,7 @@
 
 #include "base/atomic_file.h"
 #include "experiments/chain.h"
+#include "io/artifacts/artifact.h"
 #include "io/bytes/json.h"
 
 namespace axial::experiments {
@@ -11,18 +12,10 @@ namespace axial::experiments {
 // Appends `more` to `words`. Returns `words`.
 Words& operator+=(Words& words, const Words& more);
 
-// Fills `folder` by make(), unless an earlier call, perhaps of another run, has filled it with the
-// same `inputs`. make() takes no arguments. When it is called, the folder exists and is empty. If
-// make() throws, the exception is passed on, the folder does not count as filled, and the next call
-// removes its content. The file made-from.json in the folder keeps the inputs.
-template <class Make>
-void step(const std::filesystem::path& folder, const Json& inputs, Make make) {
-  const std::filesystem::path mark = folder / "made-from.json";
-  if (std::filesystem::is_regular_file(mark) && read_file(mark) == io::to_text(inputs)) return;
-  std::filesystem::remove_all(folder);
-  make_folder(folder);
-  make();
-  write_atomically(mark, io::to_text(inputs));
+// Fills `folder` by make(), unless it was filled with the same `inputs` (io::fill_folder()).
+inline void step(const std::filesystem::path& folder, const Json& inputs,
+                 const std::function<void()>& make) {
+  io::fill_folder({folder, io::to_text(inputs)}, make);
 }
 
 // Runs one of the project's programs with `chain.max_threads`. `program`: its name; it lies beside

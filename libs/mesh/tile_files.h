@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cloud/tiles.h"
+#include "io/artifacts/artifact.h"
 #include "mesh/merge_points.h"
 #include "mesh/tile_mesh.h"
 
@@ -43,6 +44,11 @@ class TileFiles {
 
  private:
   std::filesystem::path file(const char* content, std::size_t tile, const char* extension) const;
+  std::string of_tile(std::size_t tile) const;  // what a file of the tile is made from
+  // The numbers in the kinds of these files are the versions of the formats and of the methods.
+  io::Artifact boxes() const;
+  io::Artifact points_file(std::size_t tile) const;
+  io::Artifact mesh_file(std::size_t tile) const;
 
   std::filesystem::path parent_, folder_;
   std::string made_from_;

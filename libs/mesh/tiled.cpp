@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/memory.h"
-#include "base/order_statistics.h"
 #include "cloud/crop.h"
 #include "io/openmvs/point_source.h"
 #include "mesh/tile_files.h"
@@ -147,9 +146,7 @@ class TiledRun {
     read("Read points", [&](const PointCloud& portion, const io::CloudLayout&) {
       for (const Eigen::Vector3f& position : portion.positions) sample.add(position);
     });
-    const Eigen::Matrix3d axes =
-        scene_.region ? scene_.region->rotation : Eigen::Matrix3d::Identity().eval();
-    tiles_ = cloud::make_tiles(sample.points(), count_, axes);
+    tiles_ = cloud::make_tiles(sample.points(), count_, cloud::tile_axes(scene_));
     write_clouds();
     files_.write(tiles_);
   }
@@ -221,15 +218,11 @@ class TiledRun {
         if (meet(tiles_[other], tiles_[tile])) append(points_of(other), {}, around);
     const MergedPoints& typical = points.size() > 0 ? points : around;
     if (typical.size() == 0) return points;
-    const cloud::Tile reach = cloud::grown(tiles_[tile], margin_at(typical));
+    const cloud::Tile reach =
+        cloud::grown(tiles_[tile], cloud::tile_margin(margin_, typical.pixel_widths));
     append(others_inside(tile, reach), {}, points);
     sort_in_space(points);
     return points;
-  }
-
-  double margin_at(const MergedPoints& points) const {
-    const std::vector<float>& widths = points.pixel_widths;
-    return margin_ * static_cast<double>(value_at_place(widths, (widths.size() - 1) * 19 / 20));
   }
 
   // Appends the points inside `box`.

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "survey/fingerprint.h"
 
-#include <sys/stat.h>
-
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
 #include "base/parallel.h"
+#include "io/artifacts/artifact.h"
 #include "io/bytes/json.h"
 
 namespace axial::survey {
@@ -61,23 +60,10 @@ std::string content_of(const std::vector<fs::path>& files) {
 std::string state_of(const std::vector<fs::path>& files) {
   Fingerprint state;
   for (const fs::path& file : files) {
-    struct stat found {};
-    if (::stat(file.c_str(), &found) != 0) return {};
     state.add(file.string());
-    for (const auto number : {found.st_size, found.st_mtim.tv_sec, found.st_mtim.tv_nsec})
-      state.add(static_cast<std::uint64_t>(number));
+    if (!io::add_state(state, file)) return {};
   }
   return state.hex();
-}
-
-// Fingerprints by state_of().
-nlohmann::json kept_contents(const fs::path& file) {
-  try {
-    if (fs::exists(file)) return io::read_json(file).at("contents");
-  } catch (const std::exception&) {
-    // A damaged file: the photographs are read.
-  }
-  return nlohmann::json::object();
 }
 
 std::string kept_or_read(const nlohmann::json& kept, const std::string& state,
@@ -91,7 +77,9 @@ std::string kept_or_read(const nlohmann::json& kept, const std::string& state,
 
 std::vector<std::string> contents_of_views(const Survey& survey, const KeptContents& kept,
                                            const Context& context) {
-  const nlohmann::json old = kept.read ? kept_contents(kept.file) : nlohmann::json::object();
+  const nlohmann::json old =
+      kept.read ? io::read_object(kept.file).value("contents", nlohmann::json::object())
+                : nlohmann::json::object();
   std::vector<std::string> prints(survey.views.size()), states(survey.views.size());
   ProgressCounter counter(context.stage("Fingerprints of images"), prints.size());
   parallel_for(prints.size(), [&](std::size_t v) {

@@ -25,12 +25,9 @@ struct ResultSize {
   std::vector<cv::Size> textures;
 };
 
-// The largest Options::tiles.
-inline constexpr std::size_t kMostTiles = 1000;
-
 struct Options {
-  // The number of tiles of texture_tiles(), from 1 to kMostTiles, and their axes (rows) in the
-  // frame of the mesh.
+  // The number of tiles of texture_tiles(), from 1 to kMostTiles (base/tiling.h), and their
+  // axes (rows) in the frame of the mesh.
   std::size_t tiles = 1;
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   SplitOptions split;

@@ -44,7 +44,7 @@ def in_tiles(folder, truth):
         sides.append(folder / f"tile{tile}.json")
         written = folder / f"scene_dense.tile{tile}-{TILES}.ply.json"
         sides[-1].write_text(written.read_text())
-    costs.append(fused(folder, "joined", "--fusion-tiles", TILES))
+    costs.append(fused(folder, "joined", "--tiles", TILES))
     return costs, sides, runs.evaluate(folder, truth, "air")
 
 

@@ -65,12 +65,12 @@ class Jobs(InFolder):
 
     def test_only_fusion_exports(self):
         for export in ("--pinhole-export export", "--pinhole-export=export", "--pinhole export"):
-            survey = self.survey(densify=f"--iters 2 {export} --fusion-tiles 4")
+            survey = self.survey(densify=f"--iters 2 {export} --tiles 4")
             for name, more in (("plan", ["--plan", str(self.folder / jobs.PLAN)]),
                                ("depth-geometric1-2of3", ["--until", "geometric1", "--part", "2/3"])):
                 words = survey.step(name)[0].command
                 self.assertEqual(words[words.index("--iters"):],
-                                 ["--iters", "2", "--fusion-tiles", "4", *more])
+                                 ["--iters", "2", "--tiles", "4", *more])
             self.assertIn(export, " ".join(survey.step("densify")[0].command))
 
     def test_tiles_are_jobs(self):
@@ -79,21 +79,21 @@ class Jobs(InFolder):
         words = survey.step("mesh-tile-2of3")[0].command
         self.assertEqual(words[-6:], ["--tiles", "3", "-d", "4", "--tile", "2/3"])
         words = survey.step("densify-tile-1of3")[0].command
-        self.assertEqual(words[-4:], ["--fusion-tiles", "3", "--tile", "1/3"])
+        self.assertEqual(words[-4:], ["--tiles", "3", "--tile", "1/3"])
         self.assertEqual(survey.before_tile_of_mesh("1of3"), [jobs.done("densify")])
         self.assertEqual(survey.before_tile_of_mesh("3of3"), [jobs.done("mesh-tile-1of3")])
         self.assertEqual(self.survey(until="mesh").tiled, [])
         self.assertEqual(self.survey(tiles=3).tiled, ["densify"])
 
     def test_options_that_contradict_tiles_are_refused(self):
-        for tiles, name, words in ((2, "mesh", "-d 4 --decimate=0.5"), (2, "densify", "--fusion-tiles 3"),
+        for tiles, name, words in ((2, "mesh", "-d 4 --decimate=0.5"), (2, "densify", "--tiles 3"),
                                    (2, "mesh", "--dec 0.5"), (2, "densify", "--fusion-t=3"),
                                    (1, "texture", "--tiles 4"), (1, "densify", "--tile 1/2")):
             given = argparse.Namespace(**{"densify": "", "mesh": "", "texture": "", name: words},
                                        tiles=tiles)
             with self.assertRaisesRegex(Failure, f"--{name}: --.* contradicts --tiles {tiles}"):
                 reconstruct_options.check_tiles(given)
-        reconstruct_options.check_tiles(argparse.Namespace(densify="--fusion-tiles 3", mesh="--tiles 4",
+        reconstruct_options.check_tiles(argparse.Namespace(densify="--tiles 3", mesh="--tiles 4",
                                                    texture="", tiles=1))
 
     def test_the_result_of_tiles_is_any_of_their_files(self):

@@ -295,7 +295,7 @@ class Stale(Outputs):
         write(changed, read(changed) + b" ")
         tiles = lambda: {name for name in files_below(self.work) if ".tile" in name}
         self.assertEqual(len(tiles()), 6)
-        said = self.succeeds(*densify, "--fusion-tiles", "4").stdout
+        said = self.succeeds(*densify, "--tiles", "4").stdout
         self.assertEqual(tiles(), {"scene_dense.tile2-2.ply", "scene_dense.tile2-2.ply.json"})
         self.assertIn(f"warning: {changed}: of another number of tiles", said)
         os.remove(changed)

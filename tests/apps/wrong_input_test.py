@@ -171,11 +171,12 @@ class Densify(TinyScene):
 
     def test_tiles(self):
         self.refuses_options(
-            *(("fusion-tiles", "--fusion-tiles", tiles) for tiles in ("0", "-1", "1001", "x")),
+            *((name, f"--{name}", tiles) for name in ("tiles", "fusion-tiles") for tiles in ("0", "-1", "1001", "x")),
             *((f"--tile {tile}: ", "--tile", tile) for tile in (
                 "x", "2", "/", "1/", "/4", "1/4/5", "a/4", "-1/4", "0/4", "3/2", "1/0", "1/1001", " 1/2")),
-            ("--tile 2/4: contradicts --fusion-tiles 3", "--tile", "2/4", "--fusion-tiles", "3"),
-            *((" ".join(tiles) + said, *tiles, *more) for tiles in (("--tile", "2/4"), ("--fusion-tiles", "4"))
+            *(("--tile 2/4: contradicts --tiles 3", "--tile", "2/4", name, "3") for name in ("--tiles", "--fusion-tiles")),
+            ("--fusion-tiles 3: contradicts --tiles 2", "--fusion-tiles", "3", "--tiles", "2"),
+            *((" ".join(tiles) + said, *tiles, *more) for tiles in (("--tile", "2/4"), ("--tiles", "4"))
               for said, *more in ((": needs fusion", "--fusion-mode", "1"), (": needs fusion", "--estimate-scale", "1"),
                                   (": contradicts --estimate-colors 1", "--estimate-colors", "1"),
                                   (": contradicts --estimate-normals 1", "--estimate-normals", "1"))),

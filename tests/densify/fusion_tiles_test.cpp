@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/atomic_file.h"
+#include "base/tiling.h"
 #include "densify/floor_fixture.h"
 #include "densify/memory_plan.h"
 #include "densify/tiles.h"
@@ -49,7 +50,7 @@ class FusionTiles : public FloorTest {
   }
 
   fs::path tile_path(std::size_t tile, std::size_t tiles) const {
-    return tile_file(options_.output.scene, tile, tiles);
+    return tile_file(options_.output.scene, tile, tiles, ".ply");
   }
 
   std::size_t tile_files() const {

@@ -4,8 +4,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "io/artifacts/written_files.h"
 #include "io/bytes/json.h"
-#include "io/bytes/written_files.h"
 #include "io/cameras/position_file.h"
 #include "io/cameras/transform_file.h"
 #include "reader.h"

@@ -106,7 +106,7 @@ class Installed(Case):
 
         refused = run(0, 0)
         self.assertEqual(refused.returncode, 1, refused.stdout)
-        self.assertRegex(refused.stderr, r"^fusion_tiles 0: .*\n$")
+        self.assertRegex(refused.stderr, r"^tiles 0: .*\n$")
         stopped = run(1)
         self.assertEqual((stopped.returncode, stopped.stdout.splitlines()[-1]), (2, "stopped"), stopped.stderr)
         self.assertFalse((out / "dense.ply").exists())

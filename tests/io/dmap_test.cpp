@@ -180,7 +180,7 @@ TEST_F(DmapTest, CountsAsPinholeWithoutItsSideFile) {
   const StoredDepthMap stored = read_dmap(file_);
   EXPECT_FALSE(stored.map.camera.port);
   EXPECT_EQ(stored.made_from, "");
-  EXPECT_EQ(dmap_made_from(file_), std::nullopt);
+  EXPECT_EQ(dmap_status(file_).made_from, "");
   EXPECT_NEAR(stored.map.depth(3, 3), map.depth(3, 3), 1e-6);
   EXPECT_LE(stored.map.min_depth, 0.30f + 0.07f);
   EXPECT_GE(stored.map.max_depth, 0.30f + 0.07f * 61);
@@ -243,7 +243,7 @@ TEST_F(DmapTest, RefusesASideFileOfAnotherMap) {
   EXPECT_THAT(message("\"n_glass\": 1.49", "\"n_glass\": 0.5"), HasSubstr("n_glass is 0.5"));
   EXPECT_THAT(message("\"max_depth_m\": 4.5", "\"max_depth_m\": 1e39"), HasSubstr("to inf"));
   EXPECT_THAT(message("\"made_from\"", "\"made_by\""), HasSubstr("made_by"));
-  EXPECT_EQ(dmap_made_from(file_), std::nullopt);
+  EXPECT_EQ(dmap_status(file_).made_from, "");
 }
 
 // The distance is larger than that of the glass of any housing.
@@ -261,23 +261,23 @@ TEST_F(DmapTest, KeepsTheWaterSurfaceUnderADrone) {
 }
 
 TEST_F(DmapTest, TellsWhatAMapWasMadeFrom) {
-  EXPECT_EQ(dmap_made_from(file_), std::nullopt);
+  EXPECT_EQ(dmap_status(file_).made_from, "");
   write_dmap(file_, depth_map(folder_, Port::flat), "abc");
-  EXPECT_EQ(dmap_made_from(file_), "abc");
+  EXPECT_EQ(dmap_status(file_).made_from, "abc");
   test::put(side_, "{");
-  EXPECT_EQ(dmap_made_from(file_), std::nullopt);
+  EXPECT_EQ(dmap_status(file_).made_from, "");
   write_dmap(file_, depth_map(folder_, Port::flat), "def");
-  EXPECT_EQ(dmap_made_from(file_), "def");
+  EXPECT_EQ(dmap_status(file_).made_from, "def");
   const std::string whole = read_file(file_);
   for (const std::string& other :
        {whole.substr(0, 100), whole + "x", std::string(whole.size(), '1')}) {
     test::put(file_, other);
-    EXPECT_EQ(dmap_made_from(file_), std::nullopt);
+    EXPECT_EQ(dmap_status(file_).made_from, "");
   }
   test::put(file_, whole);
-  EXPECT_EQ(dmap_made_from(file_), "def");
+  EXPECT_EQ(dmap_status(file_).made_from, "def");
   fs::remove(file_);
-  EXPECT_EQ(dmap_made_from(file_), std::nullopt);
+  EXPECT_EQ(dmap_status(file_).made_from, "");
 }
 
 TEST_F(DmapTest, TellsWhoWroteAMap) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/bytes/written_files.h"
+#include "io/artifacts/written_files.h"
 
 #include <gtest/gtest.h>
 

@@ -86,7 +86,7 @@ def options(script_folder, description, words=None):
 
 
 # Options of programs that contradict tiles, which `reconstruct` asks for.
-NOT_WITH_TILES = {"densify": ("--fusion-tiles", "--tile", "--estimate-normals", "--estimate-colors"),
+NOT_WITH_TILES = {"densify": ("--tiles", "--fusion-tiles", "--tile", "--estimate-normals", "--estimate-colors"),
                   "mesh": ("--tiles", "--tile", "--decimate", "--target-face-num", "--edge-length"),
                   "texture": ("--tiles",)}
 

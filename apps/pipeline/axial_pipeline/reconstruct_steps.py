@@ -44,9 +44,9 @@ class Run:
         own = self.own(name)
         return [*(masks.words(self.given, self.masks, own) if KINDS[name].takes_masks else []), *own]
 
-    def tiles(self, option):
+    def tiles(self):
         """The option of a program for the tiles."""
-        return (option, self.given.tiles) if self.given.tiles > 1 else ()
+        return ("--tiles", self.given.tiles) if self.given.tiles > 1 else ()
 
     def step(self, name, command, makes, reads=(), also=(), **more):
         """The step of a program. It reads what the words of its option name, too, but not the masks of this run: the
@@ -147,7 +147,7 @@ def cloud_steps(run):
     scene = run.out / "scene.mvs"
     yield run.step("import", run.programs.import_scene(run.refined, run.given.images, scene,
                                                        run.refined / "housing.json"), scene)
-    yield run.step("densify", run.programs.densify(scene, run.out, *REFRACTIVE, *run.tiles("--fusion-tiles"),
+    yield run.step("densify", run.programs.densify(scene, run.out, *REFRACTIVE, *run.tiles(),
                                                    *run.words("densify")), run.out / "scene_dense.ply")
 
 
@@ -156,14 +156,14 @@ def mesh_steps(run, wanted):
     given, out, programs = run.given, run.out, run.programs
     mesh, refined, textured = meshes(out)
     if "mesh" in wanted:
-        yield run.step("mesh", programs.reconstruct_mesh(run.scene, mesh, *REFRACTIVE, *run.tiles("--tiles"),
+        yield run.step("mesh", programs.reconstruct_mesh(run.scene, mesh, *REFRACTIVE, *run.tiles(),
                                                          *run.words("mesh")), mesh)
     if "refine-mesh" in wanted:
         yield run.step("refine-mesh", programs.refine_mesh(run.scene, mesh, refined, *REFRACTIVE,
                                                            *run.words("refine-mesh")), refined)
     if "texture" in wanted:
         command = programs.texture_mesh(run.scene, best_mesh(given, out), textured, "--export-type", "glb,ply",
-                                        *REFRACTIVE, *run.tiles("--tiles"), *run.words("texture"))
+                                        *REFRACTIVE, *run.tiles(), *run.words("texture"))
         yield run.step("texture", command, Tiles(out, f"scene_textured.tile*-{given.tiles}.glb") if given.tiles > 1
                        else Files(textured.with_suffix(".glb"), textured.with_suffix(".ply")),
                        anew=run.made_before("texture"))

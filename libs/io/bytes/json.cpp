@@ -40,6 +40,15 @@ Json read_json(const std::filesystem::path& path) {
   return parse_json(read_file(path, kLargest), path.string());
 }
 
+Json read_object(const std::filesystem::path& path) {
+  try {
+    if (Json json = read_json(path); json.is_object()) return json;
+  } catch (const Error&) {
+    // Missing or damaged.
+  }
+  return Json::object();
+}
+
 Json parse_json(std::string_view text, const std::string& name) {
   try {
     return Json::parse(text, DuplicateKeys());

@@ -14,6 +14,10 @@ namespace axial::io {
 // MiB, contains malformed JSON, or contains a key twice in one object.
 nlohmann::json read_json(const std::filesystem::path& path);
 
+// Returns the JSON object in a file. Returns an object without entries if there is no such file, or
+// if its content is not an object: for files that a later run can do without.
+nlohmann::json read_object(const std::filesystem::path& path);
+
 // Parses a JSON text that is a part of the file `name`. Throws an Error that begins with `name` for
 // malformed JSON, more than 1,000 lists or objects inside one another, or a key that an object
 // contains twice.

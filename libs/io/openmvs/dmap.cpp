@@ -9,6 +9,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "io/artifacts/artifact.h"
 #include "private/openmvs/dmap_parts.h"
 
 namespace axial::io {
@@ -107,8 +108,8 @@ StoredDepthMap read_dmap(const fs::path& path, DmapSide use) {
   const auto side = use == DmapSide::used ? read_dmap_side_file(path) : std::nullopt;
   if (side) {
     if (side->content != fingerprint_of(bytes))
-      fail("{}: is not the depth map to which {} belongs", file, dmap_side_path(path).string());
-    use_side_file(*side, dmap_side_path(path).string(), stored);
+      fail("{}: is not the depth map to which {} belongs", file, side_file(path).string());
+    use_side_file(*side, side_file(path).string(), stored);
   }
   map.image_path = resolved_image(map.image_path, path);
   map.depth = lambda_of(map.depth, map.camera, file);
@@ -135,7 +136,7 @@ DepthMap read_dmap_header(const fs::path& path, DmapSide use) {
   StoredDepthMap stored{std::move(header.map), {}};
   if (use == DmapSide::used)
     if (const auto side = read_dmap_side_file(path))
-      use_side_file(*side, dmap_side_path(path).string(), stored);
+      use_side_file(*side, side_file(path).string(), stored);
   DepthMap& map = stored.map;
   map.image_path = resolved_image(map.image_path, path);
   std::tie(map.min_depth, map.max_depth) = range_along_ray(map, file);
@@ -165,7 +166,7 @@ void write_dmap(const fs::path& path, const DepthMap& map, const std::string& ma
 DmapStatus dmap_status(const fs::path& path) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return {};
-  if (!fs::is_regular_file(path, ignored) || !fs::exists(dmap_side_path(path), ignored))
+  if (!fs::is_regular_file(path, ignored) || !fs::exists(side_file(path), ignored))
     return {DmapOrigin::foreign, {}};
   try {
     const std::string bytes = read_file(path);
@@ -175,12 +176,6 @@ DmapStatus dmap_status(const fs::path& path) {
   } catch (const Error&) {
     return {DmapOrigin::damaged, {}};
   }
-}
-
-std::optional<std::string> dmap_made_from(const fs::path& path) {
-  const DmapStatus status = dmap_status(path);
-  if (status.origin != DmapOrigin::ours) return {};
-  return status.made_from;
 }
 
 }  // namespace axial::io

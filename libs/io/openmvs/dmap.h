@@ -73,15 +73,16 @@ enum class DmapOrigin {
 struct DmapStatus {
   DmapOrigin origin = DmapOrigin::none;
   std::string made_from;  // empty unless `origin` is `ours`
+
+  // Whether the depth map is ours and has this text `made_from`.
+  bool is_ours_from(const std::string& text) const {
+    return origin == DmapOrigin::ours && made_from == text;
+  }
 };
 
 // Tells whether AxialMVS or another program wrote the depth map at `path`, and whether the depth
 // map is damaged. If there is a side file, the whole depth map is read to compare its fingerprint.
 // A file that cannot be read counts as damaged.
 DmapStatus dmap_status(const std::filesystem::path& path);
-
-// Returns `made_from` of the side file if the depth map at `path` has the origin DmapOrigin::ours.
-// Otherwise returns nothing.
-std::optional<std::string> dmap_made_from(const std::filesystem::path& path);
 
 }  // namespace axial::io

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "io/artifacts/artifact.h"
 #include "private/cameras/port_json.h"
 #include "private/openmvs/dmap_parts.h"
 
@@ -30,14 +31,8 @@ refractive::PinholeLens<double> read_lens(const JsonPlace& place) {
 
 }  // namespace
 
-fs::path dmap_side_path(const fs::path& dmap) {
-  fs::path path = dmap;
-  path += ".json";
-  return path;
-}
-
 std::optional<DmapSideFile> read_dmap_side_file(const fs::path& dmap) {
-  const fs::path path = dmap_side_path(dmap);
+  const fs::path path = side_file(dmap);
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return {};
   const nlohmann::json json = read_json(path);
@@ -81,7 +76,7 @@ void write_dmap_side_file(const fs::path& dmap, const DmapSideFile& side) {
       {"content", side.content}};
   if (side.camera.port) json["port"] = port_to_json(*side.camera.port);
   if (side.camera.distortion) json["distortion"] = distortion_to_json(*side.camera.distortion);
-  write_json(dmap_side_path(dmap), json);
+  write_json(side_file(dmap), json);
 }
 
 }  // namespace axial::io

@@ -10,17 +10,10 @@
 #include "base/byte_order_mark.h"
 #include "base/error.h"
 #include "base/parse_number.h"
+#include "base/split.h"
 #include "private/only_for_io.h"
 
 namespace axial::io {
-
-inline constexpr std::string_view kBlanks = " \t\r\n\v\f";
-
-inline std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
 
 // Removes the first blank-separated token of `text` and returns it; empty if there is no token.
 inline std::string_view take_token(std::string_view& text) {

@@ -73,8 +73,6 @@ struct DmapSideFile {
   std::string content;  // Fingerprint of the .dmap's bytes
 };
 
-std::filesystem::path dmap_side_path(const std::filesystem::path& dmap);
-
 // Reads the side file of the depth map `dmap`. Returns nothing if there is no side file. Error if
 // the side file is malformed.
 std::optional<DmapSideFile> read_dmap_side_file(const std::filesystem::path& dmap);

@@ -1,31 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/bytes/written_files.h"
+#include "io/artifacts/written_files.h"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <string>
 
-#include "base/error.h"
-#include "base/hash.h"
+#include "io/artifacts/artifact.h"
 
 namespace axial::io {
 namespace fs = std::filesystem;
 
 namespace {
-
-// Reads in pieces, because clouds may be larger than the memory.
-std::string fingerprint_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string piece(1 << 20, '\0');
-  Fingerprint print;
-  while (in) {
-    in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    print.add(std::string_view(piece).substr(0, static_cast<std::size_t>(in.gcount())));
-  }
-  if (!in.eof()) fail("{}: cannot be read", file.string());
-  return print.hex();
-}
 
 bool leads_out(const fs::path& path) {
   return path.is_absolute() || path != path.lexically_normal() || path.empty() ||
@@ -39,7 +23,7 @@ nlohmann::json list_files(const fs::path& folder) {
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (fs::is_regular_file(entry.symlink_status()))
       listed[entry.path().lexically_relative(folder).generic_string()] =
-          fingerprint_of(entry.path());
+          print_of_file(entry.path());
   return listed;
 }
 
@@ -52,7 +36,7 @@ WrittenFiles find_written(const fs::path& folder, const nlohmann::json& listed) 
     if (leads_out(path) ||
         fs::symlink_status(folder / path, error).type() != fs::file_type::regular)
       continue;
-    (print == fingerprint_of(folder / path) ? found.unchanged : found.changed).push_back(path);
+    (print == print_of_file(folder / path) ? found.unchanged : found.changed).push_back(path);
   }
   std::ranges::sort(found.unchanged);
   std::ranges::sort(found.changed);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/other_tiles.h"
+#include "base/tiling.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
-#include <string>
 #include <string_view>
 
-#include "base/log.h"
+#include "base/error.h"
+#include "base/fraction.h"
 #include "base/output_name.h"
 #include "base/parse_number.h"
 
@@ -29,6 +28,31 @@ std::optional<std::size_t> tiles_in_name(std::string_view name, const std::strin
 
 }  // namespace
 
+std::string text_of(const Tiling& tiling, const SettingNames& name_of) {
+  return tiling.tile ? fmt::format("{} {}/{}", name_of("tile"), *tiling.tile, tiling.count)
+                     : fmt::format("{} {}", name_of("tiles"), tiling.count);
+}
+
+void check(const Tiling& tiling, const SettingNames& name_of) {
+  const std::size_t tile = tiling.tile.value_or(1);
+  if (tiling.count < 1 || tiling.count > kMostTiles || tile < 1 || tile > tiling.count)
+    fail("{}: must be from 1 to {}", text_of(tiling, name_of),
+         tiling.tile ? tiling.count : kMostTiles);
+}
+
+void take_tile(const std::string& value, const ParsedOptions& parsed, Tiling& tiling) {
+  const SettingNames& name_of = parsed.option_of;
+  const auto [tile, count] = parse_fraction(name_of("tile"), value, kMostTiles);
+  if (given(parsed, "tiles") && tiling.count != count)
+    fail("{} {}: contradicts {}", name_of("tile"), value, text_of({tiling.count}, name_of));
+  tiling = {count, tile};
+}
+
+fs::path tile_file(const fs::path& output, std::size_t tile, std::size_t tiles,
+                   const std::string& extension) {
+  return fs::path(output).replace_extension(fmt::format(".tile{}-{}{}", tile, tiles, extension));
+}
+
 std::vector<fs::path> other_tiles(const fs::path& output, std::size_t tiles) {
   const std::string stem = without_known_extension(output).filename().string();
   std::vector<fs::path> others;
@@ -43,9 +67,9 @@ std::vector<fs::path> other_tiles(const fs::path& output, std::size_t tiles) {
   return others;
 }
 
-void warn_of_other_tiles(const std::vector<fs::path>& tiles) {
+void warn_of_other_tiles(const std::vector<fs::path>& tiles, const Context& context) {
   if (tiles.empty()) return;
-  log_warning(
+  context.warning(
       "{}{}: of another number of tiles, not renewed by this run: remove what is not needed",
       tiles.front().string(),
       tiles.size() == 1 ? "" : fmt::format(" and {} more", tiles.size() - 1));
