@@ -6,10 +6,21 @@
 
 #include "base/error.h"
 #include "base/parse_number.h"
+#include "base/split.h"
 #include "base/version.h"
 
 namespace axial::apps {
 namespace {
+
+std::vector<double> lengths_of(const std::string& text) {
+  std::vector<double> lengths;
+  for (const std::string_view word : split(text, ',')) {
+    const auto length = parse_finite<double>(word);
+    if (!length || !(*length > 0)) fail("--bars {}: '{}' is not a length above 0", text, word);
+    lengths.push_back(*length);
+  }
+  return lengths;
+}
 
 void declare_scene(OptionList& visible, Arguments& a) {
   visible
@@ -38,6 +49,20 @@ void declare_scene(OptionList& visible, Arguments& a) {
       .add_with_default("sparse-points", &a.sparse_points,
                         "sparse points of the COLMAP model that are placed for each view")
       .range(1, 10000);
+}
+
+void declare_targets(OptionList& visible, Arguments& a) {
+  visible
+      .add_with_default("targets", &a.targets,
+                        "plates with coded targets on the ground; writes true_targets.json")
+      .range(0, 1000)
+      .add_with_default("target-family", &a.target_family,
+                        "the targets' family, as FindTargets names it")
+      .add_with_default("target-side", &a.target_side, "side of the plates [m]")
+      .range(0.01, 10)
+      .add_text(
+          "bars", [&](const std::string& text) { a.bars = lengths_of(text); },
+          "scale bars, each of two more plates, by the distances of their centres [m]: 0.5,0.5");
 }
 
 void declare_port(OptionList& visible, Arguments& a) {
@@ -81,6 +106,7 @@ ProgramOptions describe(Arguments& a) {
   program.description = "makes a synthetic scene with ground truth, in air and under water";
   // In the order of --help.
   declare_scene(program.visible, a);
+  declare_targets(program.visible, a);
   declare_port(program.visible, a);
   declare_photographs(program.visible, a);
   return program;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "base/program.h"
 #include "simulate/presets.h"
@@ -17,6 +18,10 @@ struct Arguments {
   int sparse_points = 400;  // for each view
   double haze = 0, noise = 1.2;
   bool truth = true, truth_only = false;
+  int targets = 0;  // single plates
+  std::string target_family = "circular12";
+  double target_side = 0.1;  // [m]
+  std::vector<double> bars;  // lengths [m]
   double water_level = 0;
   double dome_radius = 0, dome_x = 0, dome_y = 0, dome_z = 0;
   double port_distance = 0, port_thickness = 0, tilt_degrees = 0, n_glass = 1, n_water = 1;

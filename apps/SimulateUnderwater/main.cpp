@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "io/images/image.h"
+#include "plates.h"
 #include "write_scene.h"
 
 namespace axial::apps {
@@ -43,11 +44,16 @@ void photograph(const Arguments& a, const simulate::Preset& preset, const simula
 void simulate_scene(const Arguments& a, const simulate::Preset& preset,
                     const std::filesystem::path& folder) {
   make_folder(folder);
-  const simulate::TriangleMesh mesh = simulate::terrain_mesh(preset.terrain);
+  simulate::TriangleMesh mesh = simulate::terrain_mesh(preset.terrain);
   check_submerged(preset, mesh);
+  const auto first_plate_face = static_cast<std::uint32_t>(mesh.faces.size());
+  const PlatesOnGround plates = plates_on(mesh, preset, a);
+  append(mesh, simulate::plate_mesh(plates.plates));
   log_info("{}: {} vertices, {} faces", a.preset.name, mesh.vertices.size(), mesh.faces.size());
   const simulate::RayScene scene(mesh);
-  const simulate::Shader shader = simulate::seabed_shader(mesh, scene, preset.texture);
+  const simulate::Shader shader = simulate::with_plates(
+      simulate::seabed_shader(mesh, scene, preset.texture), plates.plates, first_plate_face);
+  if (!plates.plates.empty()) write_true_targets(folder, plates, scene, preset, a.medium);
   write_mesh(folder / "mesh.ply", mesh);
   if (preset.moved) write_change(folder / "change.json", preset, simulate::true_change(preset));
   if (!a.truth_only) {

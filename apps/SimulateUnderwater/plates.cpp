@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "plates.h"
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "io/bytes/json.h"
+#include "targets/family.h"
+#include "targets/pattern.h"
+#include "write_scene.h"
+
+namespace axial::apps {
+namespace {
+
+using nlohmann::json;
+
+json vector_json(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+// The images of all plates in one medium, by the names of the photographs.
+json images_json(const PlatesOnGround& plates, const simulate::RayScene& scene,
+                 const simulate::Preset& preset, bool water) {
+  constexpr double kColmapCentre = 0.5;  // of COLMAP's first pixel; the simulator's is 0
+  json images = json::object();
+  for (std::size_t i = 0; i < preset.views.size(); ++i) {
+    json& image = images[view_name(i) + ".jpg"] = json::array();
+    const simulate::Port port = port_of_view(preset, preset.views[i]);
+    for (std::size_t k = 0; k < plates.plates.size(); ++k)
+      if (const auto seen = simulate::image_of(plates.plates[k], scene, preset.lens,
+                                               water ? &port : nullptr, preset.views[i]))
+        image.push_back({{"label", plates.labels[k]},
+                         {"x", seen->centre.x() + kColmapCentre},
+                         {"y", seen->centre.y() + kColmapCentre},
+                         {"width", seen->width},
+                         {"oblique_degrees", seen->oblique / simulate::kRadians}});
+  }
+  return images;
+}
+
+}  // namespace
+
+PlatesOnGround plates_on(const simulate::TriangleMesh& ground, const simulate::Preset& preset,
+                         const Arguments& a) {
+  PlatesOnGround result{{}, {}, a.bars};
+  const auto single = static_cast<std::size_t>(a.targets);
+  const std::size_t count = single + 2 * a.bars.size();
+  if (count == 0) return result;
+  const targets::Family family = targets::parse_family(a.target_family);
+  const targets::Numbers numbers = targets::numbers_of(family);
+  if (numbers.first + count > numbers.last + 1)
+    fail("--targets {} and {} bars need {} targets, but {} has {}", a.targets, a.bars.size(), count,
+         family.name, numbers.last + 1 - numbers.first);
+  const simulate::RayScene scene(ground);
+  result.plates = simulate::lay_plates(scene, preset.lens, preset.views,
+                                       {single, a.bars, a.target_side, a.preset.seed});
+  for (std::size_t i = 0; i < count; ++i) {
+    const targets::Pattern pattern(family, numbers.first + i);
+    result.labels.push_back(targets::label_of(family, numbers.first + i));
+    result.plates[i].white = [pattern](double x, double y) {
+      return pattern.white(x * pattern.half_plate(), y * pattern.half_plate());
+    };
+  }
+  return result;
+}
+
+void write_true_targets(const std::filesystem::path& folder, const PlatesOnGround& plates,
+                        const simulate::RayScene& scene, const simulate::Preset& preset,
+                        const std::string& medium) {
+  json file = {{"plates", json::array()}, {"bars", json::array()}, {"images", json::object()}};
+  for (std::size_t i = 0; i < plates.plates.size(); ++i) {
+    const simulate::Plate& plate = plates.plates[i];
+    file["plates"].push_back({{"label", plates.labels[i]},
+                              {"centre", vector_json(plate.centre)},
+                              {"normal", vector_json(-plate.axes.col(2))},
+                              {"side", plate.side}});
+  }
+  const std::size_t first = plates.plates.size() - 2 * plates.bars.size();
+  for (std::size_t i = 0; i < plates.bars.size(); ++i)
+    file["bars"].push_back({{"a", plates.labels[first + 2 * i]},
+                            {"b", plates.labels[first + 2 * i + 1]},
+                            {"length", plates.bars[i]}});
+  if (medium != "water") file["images"]["air"] = images_json(plates, scene, preset, false);
+  if (medium != "air") file["images"]["water"] = images_json(plates, scene, preset, true);
+  io::write_json(folder / "true_targets.json", file);
+}
+
+}  // namespace axial::apps
