@@ -58,7 +58,6 @@ class Import(ProgramTest):
         self.assertIn("are used; the ports of the model in", self.imported(*self.port("port.json", 0.03)))
 
 
-
 class ManyCameras(ProgramTest):
     WIDTH, HEIGHT, COUNT = 1200, 900, 12
 

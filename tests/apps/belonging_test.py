@@ -190,6 +190,5 @@ class Folders(Belonging):
             self.assertIn(f"scene.mvs: the paths of its images start at {self.one}", said, command)
 
 
-
 if __name__ == "__main__":
     main()

@@ -352,6 +352,5 @@ class WrongInput(CompareTest):
         self.refuses_and_keeps("a.ply: the mesh has no area", *self.compare())
 
 
-
 if __name__ == "__main__":
     main()

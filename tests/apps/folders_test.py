@@ -106,7 +106,6 @@ class Folders(unittest.TestCase):
         for i, name in enumerate(built):
             self.assertLessEqual(links[name], set(built[:i]), name)
 
-
     def test_contributing_draws_the_arrows_of_cmake(self):
         text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
         lines = re.findall(r"^    (\w+ -> .*)$", text, re.M)

@@ -298,6 +298,5 @@ class Uncertainty(Densified):
                 self.assertGreater(calibration["within_1_2_3"][2], 0.93)
 
 
-
 if __name__ == "__main__":
     main()

@@ -89,6 +89,5 @@ class Killed(Densified):
         self.check(*self.two_copies(), "RefineMesh", "-m", "scene_dense_mesh.ply", *REFINE)
 
 
-
 if __name__ == "__main__":
     main()

@@ -225,6 +225,5 @@ class WrongInput(MapTest):
                          r"is the disk full\?\n$")
 
 
-
 if __name__ == "__main__":
     main()

@@ -80,7 +80,6 @@ class Masks(ProgramTest):
             self.assertIn(part, warnings[0])
 
 
-
 class MasksForColmap(ProgramTest):
     """InterfaceCOLMAP writes masks in COLMAP's form, which the other programs understand, too."""
 

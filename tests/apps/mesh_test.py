@@ -121,6 +121,5 @@ class Mesh(Densified):
             ("--output-file new/: must be the name of a file", "-o", "new/"))
 
 
-
 if __name__ == "__main__":
     main()

@@ -47,7 +47,6 @@ class FilesOfTheScene(Outputs):
             self.removes(made)
 
 
-
 class OneRule(Outputs):
     """A known extension is replaced, every other dot belongs to the name."""
 

@@ -181,7 +181,6 @@ class Refusals(Exports):
         self.refused("a.mask.png", work, "--pinhole-export", "pinholes")
 
 
-
 class Taken(Exports):
     """The export as input of a program for pinhole cameras: DensifyPointCloud without a housing."""
 

@@ -167,6 +167,5 @@ class WithStandIns(StandIns):
         self.succeeds("--earlier", "out/scene_dense_backup.ply", "--without", "map,page")
 
 
-
 if __name__ == "__main__":
     main()

@@ -174,6 +174,5 @@ class WrongInput(TextureTest):
                                     "--texture-size-multiple", "16", "--empty-color", "255"))
 
 
-
 if __name__ == "__main__":
     main()

@@ -277,7 +277,6 @@ class Ports(Aligned):
         self.assertIn("scale 1,", self.aligned(self.positions(1.01), "--rigid"))
 
 
-
 class Volume(Transform):
     def measured(self, said, what):
         return float(re.search(re.escape(what) + r": (\S+) m\^3", said)[1])
@@ -300,7 +299,6 @@ class Volume(Transform):
         self.assertAlmostEqual(self.measured(said, "Volume above the ground plane") / 2.5 ** 3, 1, 3)
         self.refused("mesh.ply: it is not closed (8 border edges", "-m", "mesh.ply",
                      "--compute-volume", 1, "--plane-threshold", -1)
-
 
 
 if __name__ == "__main__":

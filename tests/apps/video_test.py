@@ -182,6 +182,5 @@ class RealFrames(WithVideo):
             self.assertGreaterEqual(len(photographs), 5)
 
 
-
 if __name__ == "__main__":
     main()

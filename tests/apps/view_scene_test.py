@@ -149,7 +149,6 @@ class ViewFolder(ViewCase):
         self.refuses_and_keeps("--report is missing", *self.view()[:-2])
 
 
-
 class WithoutPage(ViewCase):
     def test_a_build_without_the_page_says_so(self):
         program = shutil.copy(os.path.join(BIN, "ViewScene"), self.path("ViewScene"))
