@@ -64,7 +64,8 @@ def chain(data, water):
 def run(programs, folder, data, command):
     """Runs a command in `folder`. A failure is written into its log, which is compared, too."""
     name, *words = [str(word).replace("@", f"{data}/") if str(word).startswith("@") else str(word) for word in command]
-    ended = subprocess.run([programs / name, *words], cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    ended = subprocess.run([programs / name, *words], cwd=folder, stdin=subprocess.DEVNULL, capture_output=True,
+                           text=True)
     if ended.returncode != 0:
         print(f"{folder.name}: {name} {' '.join(words)}: {ended.stderr.strip()}", flush=True)
     with open(folder / "failures.txt", "a") as failures:

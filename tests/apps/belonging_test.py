@@ -5,14 +5,14 @@ must find. The meshes are the true surfaces of the simulations."""
 import os
 import shutil
 
-from programs import grey_png, main, must, read, run, write
+from programs import main, must, png, read, run, write
 from readers import Ply
 from worlds import Simulated, binary_mesh, geo_offset
 
 SIZE = ("--views", "5", "--width", "320", "--height", "240", "--samples", "1")
 TINY = ("--views", "1", "--width", "16", "--height", "12")  # where only the mesh matters
 OFFSET = (534000.0, 3378500.0, 0.0)
-GREY = grey_png([b"\x80" * 320] * 240)
+GREY = png([b"\x80" * 320] * 240)
 
 
 def moved_mesh(data, change):
@@ -161,11 +161,11 @@ class Photographs(Belonging):
             self.assertIn("scene.mvs: 5 of 5 photographs are blank", said.stderr)
 
     def test_small_photographs_are_noticed_and_tiny_ones_refused(self):
-        write(self.photograph(2), grey_png([bytes(range(160))] * 120))
+        write(self.photograph(2), png([bytes(range(160))] * 120))
         warnings = self.warnings(*self.of_scene("DensifyPointCloud", "-o", "new.mvs"))
         self.assertTrue(any("0002.jpg: is 160x120, but its camera is 320x240: 1 of 5 photographs are smaller" in warning
                             for warning in warnings), warnings)
-        write(self.photograph(2), grey_png([b"\x80"]))
+        write(self.photograph(2), png([b"\x80"]))
         for command in (*self.with_mesh(self.mesh), self.of_scene("DensifyPointCloud", "-o", "new2.mvs")):
             self.refuses("0002.jpg: is 1x1, too small for its camera, which is 320x240", *command)
 

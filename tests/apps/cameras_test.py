@@ -12,7 +12,7 @@ import unittest
 
 from colmap_databases import SHARP, Databases
 from pipeline_folder import InFolder, options_of, reconstruct_command, simulate
-from programs import ProgramTest, grey_png, main, read, write
+from programs import ProgramTest, main, png, read, write
 from stand_ins import StandIns
 from support import colmap_text
 
@@ -277,7 +277,7 @@ class InARun(StandIns):
         super().setUp()
         self.write("lens", "1 PINHOLE 4 3 9 9 2 1.5\n")
         for number in range(3, 5):
-            self.write(f"images/{number}.png", grey_png([bytes(8)] * 6))
+            self.write(f"images/{number}.png", png([bytes(8)] * 6))
 
     def test_several_sizes_reach_the_programs(self):
         said = self.succeeds("--until", "poses")
@@ -290,7 +290,7 @@ class InARun(StandIns):
         self.assertEqual(self.done_before("--until", "poses"), 5)
 
     def test_a_photograph_without_a_lens_reaches_no_program(self):
-        self.write("images/5.png", grey_png([bytes(9)] * 4))
+        self.write("images/5.png", png([bytes(9)] * 4))
         self.assertIn("warning: 1 photographs are left out (5.png)", self.succeeds("--until", "poses"))
         listed = "".join((self.folder / "out" / "cameras" / f"{number}.txt").read_text() for number in (1, 2))
         self.assertEqual(listed.split(), [f"{number}.png" for number in range(5)])

@@ -8,7 +8,7 @@ import os
 import random
 
 from geotiff import read_geotiff
-from programs import ProgramTest, contents, files_below, grey_png, main, read, write
+from programs import ProgramTest, contents, files_below, main, png, read, write
 from tiny_scene import mvs
 from worlds import Wall, grid, ply, turned
 
@@ -189,7 +189,7 @@ class Outputs(CompareTest):
 
         # The same meshes as OBJ.
         write(self.path("work", "grey.mtl"), "newmtl grey\nmap_Kd grey.png\n")
-        write(self.path("work", "grey.png"), grey_png([bytes(4)] * 4))
+        write(self.path("work", "grey.png"), png([bytes(4)] * 4))
         for name, mesh in (("a.obj", survey(before, 1)), ("b.obj", survey(after, 2))):
             write(self.path("work", name), "# geo_offset 500000 4500000 30\n" + obj(*mesh))
         self.before, self.after = self.path("work", "a.obj"), self.path("work", "b.obj")

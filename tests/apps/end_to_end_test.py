@@ -9,12 +9,12 @@ import signal
 import subprocess
 import time
 
-from close_up import FINE, GSD, QUICK, CloseUp
 from programs import BIN, cloud_size, files_below, main, must, new_folder, read, read_json, write
+from worlds import FINE, GSD, LEVEL_1, CloseUp
 
 
 # All three filters of depth maps: the adjusting filter, which is off by default, is one more stage.
-ALL_STAGES = ("--postprocess-dmaps", "7", *QUICK)
+ALL_STAGES = ("--postprocess-dmaps", "7", *LEVEL_1)
 
 
 class EndToEnd(CloseUp):
@@ -50,10 +50,10 @@ class EndToEnd(CloseUp):
 
     def test_ignoring_the_port_shows(self):
         self.import_scene("water", "ignored")
-        self.densify("ignored", "--camera-model", "pinhole", "--number-views-fuse", "2", *QUICK)
+        self.densify("ignored", "--camera-model", "pinhole", "--number-views-fuse", "2", *LEVEL_1)
         ignored = self.scores("water", "ignored")["accuracy"]
         self.import_scene("water", "obeyed")
-        self.densify("obeyed", "--refractive", "--number-views-fuse", "2", *QUICK)
+        self.densify("obeyed", "--refractive", "--number-views-fuse", "2", *LEVEL_1)
         obeyed = self.scores("water", "obeyed")["accuracy"]
         # The air gap of 3 cm and the tilt shift rays by centimetres. Matching errs by about 1 mm.
         self.assertGreater(ignored["median"], 5 * obeyed["median"])
@@ -111,7 +111,7 @@ class EndToEnd(CloseUp):
     def test_refuses_wrong_parts(self):
         self.import_scene("air", "refused")
         self.refuses_each(
-            self.command("refused", *QUICK), *((f"--part {part}: must be", "--until", "maps", f"--part={part}")
+            self.command("refused", *LEVEL_1), *((f"--part {part}: must be", "--until", "maps", f"--part={part}")
                                                for part in ("0/2", "3/2", "1", "a/b", "1/2/3", "-1/2", "1/0")),
             ("--part 1/2: needs --until", "--part", "1/2"),
             ("--until fast: must be one of photometric", "--until", "fast"),
@@ -129,7 +129,7 @@ class EndToEnd(CloseUp):
 
     def test_crops_to_the_region_of_interest(self):
         self.import_scene("air", "region")
-        small = ("--estimate-roi", "1", "--roi-border", "0.4", *QUICK)
+        small = ("--estimate-roi", "1", "--roi-border", "0.4", *LEVEL_1)
         self.densify("region", "--crop-to-roi", "0", *small)
         whole = cloud_size(read(self.path("region", "scene_dense.ply")))
         said = self.densify("region", *small)
@@ -141,14 +141,14 @@ class EndToEnd(CloseUp):
 
     def test_the_dense_scene_keeps_its_housing(self):
         self.import_scene("water", "again")
-        self.densify("again", "--refractive", *QUICK)
+        self.densify("again", "--refractive", *LEVEL_1)
         self.assertEqual(read_json(self.path("again", "scene_dense.housing.json")),
                          read_json(self.path("again", "scene.housing.json")))
         before = read(self.path("again", "scene_dense.ply"))
         self.assertIn("All 4 depth maps exist already",
-                      self.densify("again", "--refractive", *QUICK, scene="scene_dense.mvs"))
+                      self.densify("again", "--refractive", *LEVEL_1, scene="scene_dense.mvs"))
         self.assertEqual(read(self.path("again", "scene_dense_dense.ply")), before)
-        self.densify("again", "--camera-model", "pinhole", *QUICK)
+        self.densify("again", "--camera-model", "pinhole", *LEVEL_1)
         self.assertNotIn("scene_dense.housing.json", files_below(self.path("again")))
 
     def test_says_and_draws_as_much_as_the_verbosity_asks_for(self):
@@ -157,7 +157,7 @@ class EndToEnd(CloseUp):
             return {name for name in files_below(self.path("verbose")) if name.endswith(".png")}
         progress = r"Estimated depth maps [123]/4 \(\d+%, \d+s, \d+s left\)"
 
-        self.assertRegex(self.densify("verbose", *QUICK), progress)
+        self.assertRegex(self.densify("verbose", *LEVEL_1), progress)
         self.assertEqual(pictures(), set())
         expected = self.outputs(self.path("verbose"))
 
@@ -166,12 +166,12 @@ class EndToEnd(CloseUp):
         self.assertNotRegex(said, progress)
         for done in ("Scored neighbours", "Read images", "Estimated depth maps", "Fused depth maps"):
             self.assertIn(f"{done} 4/4 (100%, ", said)
-        self.assertEqual(self.densify("verbose", "-v", "0", *QUICK), "")
+        self.assertEqual(self.densify("verbose", "-v", "0", *LEVEL_1), "")
         self.assertEqual(pictures(), set())
 
         finished = {f"depth{image:04}{kind}.png" for image in range(4)
                     for kind in ("", ".normal", ".confidence")}
-        self.assertIn("Memory ", self.densify("verbose", "-v", "3", *QUICK))
+        self.assertIn("Memory ", self.densify("verbose", "-v", "3", *LEVEL_1))
         self.assertEqual(pictures(), finished)
         self.assertEqual(self.outputs(self.path("verbose")), expected)
         self.densify("verbose", "-v", "5", *again)
@@ -197,7 +197,7 @@ class ThroughTheWaterSurface(CloseUp):
     SCENE = (*FINE, "--scale", "10", "--water-level", "4")
 
     def densify_quickly(self, folder, *arguments):
-        return self.densify(folder, *arguments, "--number-views-fuse", "2", *QUICK)
+        return self.densify(folder, *arguments, "--number-views-fuse", "2", *LEVEL_1)
 
     def reconstructed(self, medium, folder, *arguments):
         self.import_scene(medium, folder)

@@ -7,7 +7,7 @@ import math
 import os
 import shutil
 
-from programs import BIN, contents, files_below, grey_png, main, read, run, without_streams, write
+from programs import BIN, contents, files_below, main, png, read, run, without_streams, write
 from tiny_scene import CENTRES, DENSIFY, picture
 from worlds import Wall, cloud, matrix_text, ply, wall
 
@@ -192,7 +192,7 @@ class Rivals(Programs):
                "2026-11-27 22:30:00")
         masks = ("InterfaceCOLMAP", "-i", self.path("colmap", "images"), "-w", self.work,
                  "--mask-path", self.path("mask.png"), "-o", "masks/")
-        write(self.path("mask.png"), grey_png([bytes(96)] * 72))
+        write(self.path("mask.png"), png([bytes(96)] * 72))
         for output, command in (
                 ("scene_texture.mvs", self.program("TextureMesh")), ("scene_refine.ply", self.program("RefineMesh")),
                 ("scene_mesh.ply", self.program("ReconstructMesh")),

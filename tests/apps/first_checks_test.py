@@ -11,7 +11,7 @@ import subprocess
 import unittest.mock
 
 from pipeline_folder import InFolder, reconstruct_command
-from programs import ProgramTest, grey_png, main, read, run, write
+from programs import ProgramTest, main, png, read, run, write
 
 from axial_pipeline import estimates, first_checks
 from axial_pipeline.failure import Failure
@@ -131,7 +131,7 @@ class Checked(ProgramTest):
     def setUp(self):
         super().setUp()
         for number in range(3):
-            write(self.path("images", f"{number}.png"), grey_png([bytes([number] * 48)] * 36))
+            write(self.path("images", f"{number}.png"), png([bytes([number] * 48)] * 36))
         write(self.path("lens.txt"), "1 PINHOLE 48 36 40 40 24 18\n")
         write(self.path("housing.json"), housing_with(FLAT))
 
@@ -176,7 +176,7 @@ class Checked(ProgramTest):
         self.assertIn("other.txt: line 1: unexpected '9' at the end", self.refused("--lens", "other.txt"))
 
     def test_a_wrong_lens_is_named_before_the_photographs(self):
-        write(self.path("images", "4.png"), grey_png([bytes(24)] * 18))
+        write(self.path("images", "4.png"), png([bytes(24)] * 18))
         write(self.path("bad.txt"), "1 PINHOLE 48 36\n")
         self.assertIn("bad.txt: line 1", self.refused(lens="bad.txt"))
 

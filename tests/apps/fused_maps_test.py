@@ -6,7 +6,7 @@ import os
 import random
 import struct
 
-from programs import cloud_size, files_below, grey_png, main, read, write
+from programs import cloud_size, files_below, main, png, read, write
 from readers import Dmap, Ply
 from worlds import Densified, dmap_names
 
@@ -158,7 +158,7 @@ def without(dmap, rows, label):
 class Fusing(Densified):
     def put(self, folder, labels, name="masks/{}.mask.png", factor=1):
         for image, rows in zip(NAMES, labels, strict=True):
-            write(os.path.join(folder, name.format(image)), grey_png(enlarged(rows, factor)))
+            write(os.path.join(folder, name.format(image)), png(enlarged(rows, factor)))
 
     def test_is_as_if_the_maps_had_no_depth_there(self):
         whole = cloud_size(self.whole("air"))
@@ -234,7 +234,7 @@ class Fusing(Densified):
                 if line in text] for mode in ("0", "-1")]
             self.assertEqual(len(said[0]), 1)
             self.assertEqual(said[0], said[1])
-        write(os.path.join(folder, "masks", "0002.mask.png"), grey_png([bytes(100)] * 100))
+        write(os.path.join(folder, "masks", "0002.mask.png"), png([bytes(100)] * 100))
         errors = {self.refuses("0002.mask.png", *self.command(
             folder, *masks, "--fusion-mode", mode)).stderr for mode in ("0", "-1")}
         self.assertEqual(len(errors), 1)

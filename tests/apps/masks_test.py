@@ -11,7 +11,8 @@ import subprocess
 import pipeline_folder  # noqa: F401 (makes axial_pipeline importable)
 import tiny_scene
 from axial_pipeline import colmap
-from programs import ProgramTest, depth_rows, grey_png, main, read, write
+from programs import ProgramTest, main, png, read, write
+from readers import Dmap
 
 LEFT, RIGHT = bytes([0] * 48 + [255] * 48), bytes([255] * 48 + [0] * 48)
 
@@ -31,7 +32,7 @@ class Masks(ProgramTest):
         write(self.path("scene.mvs"), tiny_scene.mvs(self.images))
 
     def put(self, row, *parts):
-        write(self.path(*parts), grey_png([row] * 72))
+        write(self.path(*parts), png([row] * 72))
 
     def arguments(self, *more):
         return ("DensifyPointCloud", "-i", "scene.mvs", "-w", self.folder, "--resolution-level", "0",
@@ -42,7 +43,7 @@ class Masks(ProgramTest):
 
     def matched(self, image):
         """Whether any pixel has a depth: in the left half, in the right half."""
-        rows = depth_rows(read(self.path(f"depth{image:04}.dmap")))
+        rows = Dmap(read(self.path(f"depth{image:04}.dmap"))).rows
         middle = len(rows[0]) // 2
         return tuple(any(depth > 0 for row in rows for depth in half(row))
                      for half in (lambda row: row[:middle], lambda row: row[middle:]))
@@ -86,7 +87,7 @@ class MasksForColmap(ProgramTest):
     def test_they_mean_the_same_to_colmap_and_to_the_programs(self):
         for name, centre in zip(tiny_scene.names(), tiny_scene.CENTRES):
             write(self.path("images", name), tiny_scene.picture(centre))
-            write(self.path("masks", name), grey_png([bytes([7] * 48 + [3] * 48)] * 72))
+            write(self.path("masks", name), png([bytes([7] * 48 + [3] * 48)] * 72))
         said = self.succeeds("InterfaceCOLMAP", "-i", self.path("images"), "--mask-path", self.path("masks"),
                              "--ignore-mask-label", 7, "-o", self.path("out")).stdout
         self.assertIn("3 masks, which leave out 50.0 % of the pixels", said)
@@ -98,7 +99,7 @@ class MasksForColmap(ProgramTest):
         self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.folder, "--resolution-level", "0",
                       "--iters", "1", "--geometric-iters", "0", "--postprocess-dmaps", "0", "--mask-path",
                       "out")
-        rows = depth_rows(read(self.path("depth0000.dmap")))
+        rows = Dmap(read(self.path("depth0000.dmap"))).rows
         self.assertFalse(any(depth > 0 for row in rows for depth in row[:48]))
         self.assertTrue(any(depth > 0 for row in rows for depth in row[48:]))
         if shutil.which("colmap"):
@@ -114,7 +115,7 @@ class MasksForColmap(ProgramTest):
 
     def test_what_writes_no_masks_is_refused(self):
         write(self.path("images", "a.png"), tiny_scene.picture(tiny_scene.CENTRES[0]))
-        write(self.path("mask.png"), grey_png([bytes(96)] * 72))
+        write(self.path("mask.png"), png([bytes(96)] * 72))
         given = ("InterfaceCOLMAP", "-i", self.path("images"), "--mask-path", self.path("mask.png"))
         self.refuses("--mask-path", *given)  # without -o
         self.refuses("--ignore-mask-label -1: must be from 0", *given, "-o", "x", "--ignore-mask-label=-1")

@@ -12,7 +12,7 @@ import unittest.mock
 
 from colmap_databases import make_tables
 from pipeline_folder import InFolder, options_of, simulate
-from programs import grey_png, main, new_folder
+from programs import main, new_folder, png
 
 from axial_pipeline import colmap, matching, photographs
 from axial_pipeline.database import opened, rows_of
@@ -134,7 +134,7 @@ class Matching(InFolder):
     def test_an_unknown_unit_is_told_once(self):
         self.database()
         for name in "abc":
-            self.write(f"images/{name}.jpg", grey_png([bytes(4)] * 3))
+            self.write(f"images/{name}.jpg", png([bytes(4)] * 3))
         self.positions.write_text("a.jpg 16 54 0\nb.jpg 16 54.0001 0\nc.jpg 16 54.0002 0\n")
         told = self.said_by(check, self.with_positions())
         self.assertIn("they are taken as degrees to find neighbours", told)

@@ -6,7 +6,8 @@ import json
 import os
 import shutil
 
-from programs import depth_rows, main, must, read, read_json, write
+from programs import main, must, read, read_json, write
+from readers import Dmap
 from worlds import CLOSEUP, Simulated
 
 DOME = ("--dome-radius", 0.05, "--dome-x", 0.003, "--dome-y", -0.004, "--dome-z", 0.006)
@@ -101,7 +102,7 @@ class MixedPortsTest(Simulated):
         for view, port in enumerate(PORTS):
             if port == "none":
                 continue
-            found, alone = (depth_rows(read(self.path(folder, f"depth{view:04}.dmap")))
+            found, alone = (Dmap(read(self.path(folder, f"depth{view:04}.dmap"))).rows
                             for folder in ("mixed", port))
             self.assertTrue(found == alone, view)
             self.assertGreater(sum(depth > 0 for row in found for depth in row), 5000)

@@ -6,7 +6,7 @@ import shutil
 
 import tiny_scene
 from every_program_test import Programs
-from programs import grey_png, main, read, write
+from programs import main, png, read, write
 from worlds import TRIANGLE, housing
 
 MODEL = ("cameras", "images", "points3D")
@@ -92,7 +92,7 @@ class Overwriting(Programs):
 
     def test_files_beside_the_reconstruction(self):
         mask = os.path.splitext(self.images[1])[0] + ".mask.png"
-        write(mask, grey_png([bytes(96)] * 72))
+        write(mask, png([bytes(96)] * 72))
         masked = self.densify("--ignore-mask-label", "7")
         self.succeeds(*masked)
         options = ("--report-file", "--output-view-neighbors-file")

@@ -7,8 +7,8 @@ import os
 import re
 import shutil
 
-from programs import cloud_size, contents, depth_rows, files_below, main, must, read, run, write
-from readers import Mvs, Ply, png_size, with_paths
+from programs import cloud_size, contents, files_below, main, must, read, run, write
+from readers import Dmap, Mvs, Ply, png_size, with_paths
 from worlds import QUICK, Densified, geo_offset
 
 VIEWS = Densified.VIEWS
@@ -241,7 +241,7 @@ class Taken(Exports):
         ratios, shown = [], 0
         for image in range(VIEWS):
             size = scene.camera(image)[0]
-            rows = depth_rows(read(os.path.join(folder, f"depth{image:04}.dmap")))
+            rows = Dmap(read(os.path.join(folder, f"depth{image:04}.dmap"))).rows
             scale = len(rows[0]) / size[0], len(rows) / size[1]
             for point, views in scene.points:
                 if image not in views:

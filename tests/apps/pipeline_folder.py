@@ -13,7 +13,7 @@ import sys
 import unittest
 import unittest.mock
 
-from programs import BIN, grey_png, must, new_folder
+from programs import BIN, must, new_folder, png
 
 PIPELINE = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline"
 sys.path.insert(0, str(PIPELINE))
@@ -78,7 +78,7 @@ class ColmapModelCase(InFolder):
         super().setUp()
         self.put_on_path("bin")
         for number in range(2):
-            self.write(f"images/{number}.png", grey_png([bytes(4)] * 3))
+            self.write(f"images/{number}.png", png([bytes(4)] * 3))
 
     def run_it(self, *more):
         command = [sys.executable, "-B", str(PIPELINE / "colmap-model"), "--images", "images",

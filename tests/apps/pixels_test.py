@@ -5,8 +5,8 @@ import random
 import re
 import struct
 
-from programs import depth_rows, main, png, read, write
-from readers import png_rows
+from programs import main, png, read, write
+from readers import Dmap, png_rows
 from tiny_scene import WIDTH, TinyScene
 from worlds import housing
 
@@ -28,7 +28,7 @@ class Pixels(TinyScene):
     def depths(self, files, *more):
         self.put(files)
         self.said = self.succeeds(*self.arguments(*more)).stdout
-        return [depth_rows(self.at(f"depth{i:04}.dmap")) for i in range(3)]
+        return [Dmap(self.at(f"depth{i:04}.dmap")).rows for i in range(3)]
 
     def test_twelve_bits_in_sixteen_are_as_good_as_eight(self):
         expected = self.depths(self.stored)

@@ -104,20 +104,6 @@ def png(rows, color_type=0, bits=8):
             + chunk(b"IEND", b""))
 
 
-def grey_png(rows):
-    """The bytes of an 8-bit grey PNG; `rows` are bytes of equal length."""
-    return png(rows)
-
-
-def depth_rows(dmap):
-    """The depths of a .dmap, row by row (docs/formats.md)."""
-    width, height = struct.unpack_from("<II", dmap, 12)
-    position = 28 + 2 + struct.unpack_from("<H", dmap, 28)[0]
-    position += 4 + 4 * struct.unpack_from("<I", dmap, position)[0] + 8 * (9 + 9 + 3)
-    depths = struct.unpack_from(f"<{width * height}f", dmap, position)
-    return [depths[y * width:(y + 1) * width] for y in range(height)]
-
-
 def cloud_size(ply):
     return int(re.search(rb"element vertex (\d+)", ply)[1])
 

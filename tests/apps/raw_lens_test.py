@@ -4,8 +4,8 @@ views of 512 x 384 of the close-up scene, with true poses."""
 
 import os
 
-from close_up import FINE, GSD, QUICK, CloseUp
 from programs import files_below, main, read, write
+from worlds import FINE, GSD, LEVEL_1, CloseUp
 
 
 def under_water(lens):
@@ -43,16 +43,16 @@ class OpencvLens(LensTest):
 
     def test_lenses_are_kept_and_obeyed(self):
         self.import_scene("water", "scene")
-        self.assertIn("4 images have distorted lenses", self.densify("scene", "--refractive", *QUICK))
+        self.assertIn("4 images have distorted lenses", self.densify("scene", "--refractive", *LEVEL_1))
         obeyed, _ = self.errors("scene")
         # The dense scene has the lenses, too, so that a run on it keeps the existing maps.
         self.assertEqual(read(self.path("scene", "scene_dense.lenses.json")),
                          read(self.path("scene", "scene.lenses.json")))
         self.assertIn("All 4 depth maps exist already",
-                      self.densify("scene", "--refractive", *QUICK, scene="scene_dense.mvs"))
+                      self.densify("scene", "--refractive", *LEVEL_1, scene="scene_dense.mvs"))
         # Without the lenses, the image corners are off by 30 pixels.
         os.remove(self.path("scene", "scene.lenses.json"))
-        ignored = self.densify("scene", "--refractive", *QUICK)
+        ignored = self.densify("scene", "--refractive", *LEVEL_1)
         self.assertNotRegex(ignored, "exist(ed)? already", "maps of another lens were taken over")
         self.assertIn("scene.lenses.json: file not found", ignored)
         self.assertGreater(self.errors("scene")[0], 3 * obeyed)
@@ -67,9 +67,9 @@ class OpencvLens(LensTest):
     def test_what_cannot_be_done_is_said(self):
         self.import_scene("water", "wrong")
         for option in (("--projection", "line-search"), ("--warp", "homography")):
-            self.refuses("undistort the images first", *self.command("wrong", "--refractive", *option, *QUICK))
+            self.refuses("undistort the images first", *self.command("wrong", "--refractive", *option, *LEVEL_1))
         write(self.path("wrong", "scene.lenses.json"), '{ "version": 1 }\n')
-        self.refuses("scene.lenses.json", *self.command("wrong", "--refractive", *QUICK))
+        self.refuses("scene.lenses.json", *self.command("wrong", "--refractive", *LEVEL_1))
         for lens, reason in (("OPENCV,1", "must have 4 coefficients"),
                              ("PINHOLE,1,2,3,4", "must begin with OPENCV"),
                              ("OPENCV,0,0,0,x", "'x' is not a number"),

@@ -167,6 +167,13 @@ class Dmap:
         self.normals = data[at + 4 * pixels:at + 16 * pixels]
         self.rest = data[at + 16 * pixels:]
 
+    @property
+    def rows(self):
+        """The depths, row by row."""
+        width, height = self.size
+        depths = struct.unpack(f"<{width * height}f", self.depths)
+        return [depths[y * width:(y + 1) * width] for y in range(height)]
+
     def bytes(self, normals=True):
         content = self.content if normals else self.content & ~2
         return (b"DR" + struct.pack("<BBIIIIff", content, 0, *self.image, *self.size, *self.range)
@@ -264,13 +271,13 @@ def rotated(q, v):
 
 def records(path):
     """The lines of a file of a COLMAP text model, without comments."""
-    return [line for line in read(path).decode().split("\n") if line and not line.startswith("#")]
+    return [line for line in colmap_text.records(pathlib.Path(path)) if line]
 
 
 def image_lines(path):
     """Pairs of lines of images.txt: pose and observations. A line of observations may be empty."""
-    lines = [line for line in read(path).decode().split("\n") if not line.startswith("#")]
-    return [(lines[i], lines[i + 1]) for i in range(0, len(lines) - 1, 2)]
+    lines = colmap_text.records(pathlib.Path(path))
+    return list(zip(lines[0::2], lines[1::2]))
 
 
 def centres_of(model):

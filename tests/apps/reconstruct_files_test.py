@@ -8,7 +8,7 @@ import shutil
 import unittest.mock
 
 from pipeline_folder import ColmapModelCase
-from programs import grey_png, main
+from programs import main, png
 from stand_ins import StandIns
 
 from axial_pipeline import photographs, reconstruct_options
@@ -131,7 +131,7 @@ class ColmapModelFiles(ColmapModelCase):
         for name in ("cameras.bin", "images.bin", "points3D.bin"):
             self.write(f"out/model/{name}", "")
         self.assertIn("kept from an earlier run", self.run_it().stdout)
-        self.write("mask.png", grey_png([bytes(4)] * 3))
+        self.write("mask.png", png([bytes(4)] * 3))
         self.assertEqual(self.run_it("--masks", "mask.png").stderr,
                          "colmap-model: out/model: was made with other masks, or without masks; remove it, or give "
                          "another --output\n")
@@ -152,7 +152,7 @@ class Photographs(StandIns):
 
     def test_what_colmap_would_do_wrong_is_refused(self):
         images = self.folder / "images"
-        other = self.write("images/.hidden/small.png", grey_png([bytes(2)] * 2))
+        other = self.write("images/.hidden/small.png", png([bytes(2)] * 2))
         self.assertEqual(self.refused(), f"--images {images}: the photographs have different sizes: 3 of 4 x "
                          "3 pixels (0.png first), 1 of 2 x 2 pixels (.hidden/small.png); all must be of one "
                          "camera and setting: move the others to another folder")
@@ -214,7 +214,7 @@ class Photographs(StandIns):
             return mark + (8).to_bytes(4, order) + (2).to_bytes(2, order) + table
 
         frame = b"\xff\xc2\0\x0b\x08\0\x03\0\x04\x01\x01\x11\0\xff\xd9"
-        for data in (grey_png([bytes(4)] * 3), b"\xff\xd8" + frame, b"\xff\xd8\xff\xe1\0\x05abc" + frame,
+        for data in (png([bytes(4)] * 3), b"\xff\xd8" + frame, b"\xff\xd8\xff\xe1\0\x05abc" + frame,
                      tiff("little", b"II*\0"), tiff("big", b"MM\0*")):
             image = photographs.image_of(self.write("image", data))
             self.assertEqual((image.size, image.is_whole), ((4, 3), True))

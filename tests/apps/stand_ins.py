@@ -6,14 +6,14 @@ import select
 import subprocess
 
 from pipeline_folder import InFolder, reconstruct_command
-from programs import grey_png
+from programs import png
 
 from axial_pipeline.programs import NAMES
 
 
 def photograph(number):
     """The bytes of a photograph; each number gives another one."""
-    return grey_png([bytes([number] * 4)] * 3)
+    return png([bytes([number] * 4)] * 3)
 
 
 PHOTOGRAPHS = [photograph(number) for number in range(3)]

@@ -4,7 +4,7 @@
 import os
 import re
 
-from programs import contents, files_below, grey_png, main, run, write
+from programs import contents, files_below, main, png, run, write
 from readers import Glb
 from tiny_scene import HEIGHT, WIDTH
 from worlds import Wall, turned, wall
@@ -126,7 +126,7 @@ class Masks(TextureTest):
 
     def mask(self, *labels):
         for image, label in zip(self.images, labels):
-            write(image + ".png", grey_png([bytes([label]) * WIDTH] * HEIGHT))
+            write(image + ".png", png([bytes([label]) * WIDTH] * HEIGHT))
 
     def test_the_label_is_the_one_that_was_given(self):
         """OpenMVS 2.3 leaves out label 0 whatever label is given."""

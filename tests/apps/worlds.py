@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The worlds that the program tests share: ports and meshes that are written by hand, the plane of
-tiny_scene.py with a mesh (Wall), and the simulated close-up scene (Simulated), also densified in air and
-under water (Densified)."""
+tiny_scene.py with a mesh (Wall), and the simulated close-up scene (Simulated, CloseUp), also densified in air
+and under water (Densified)."""
 
 import inspect
 import json
@@ -171,6 +171,33 @@ class Simulated(ProgramTest):
         result = read_json(report)
         os.remove(report)
         return result
+
+
+FINE = ("--preset", "closeup", "--views", 4, "--width", 512, "--height", 384, "--seed", 1, "--samples", 2,
+        "--coarseness", 3)
+# The width of a pixel at the scene: the median distance (0.7 m) over the focal length (305 px).
+GSD = 0.7 / 305
+# Large enough to show differences in quality, small enough to run often.
+LEVEL_1 = ("--resolution-level", "1", "--min-resolution", "200")
+# Recall then has a standard deviation of 0.004. Errors use all points of the cloud.
+RECALL_SAMPLES = 20000
+
+
+class CloseUp(Simulated):
+    """Four views of 512 x 384 of the close-up scene. The folders of a case are below self.folder."""
+
+    def import_scene(self, medium, folder, *arguments, port=None):
+        self.imported(self.path(folder, "scene.mvs"), medium, *arguments, port=port)
+
+    def command(self, folder, *arguments, scene="scene.mvs"):
+        return ("DensifyPointCloud", "-i", scene, "-w", self.path(folder), *arguments)
+
+    def densify(self, folder, *arguments, scene="scene.mvs"):
+        return self.succeeds(*self.command(folder, *arguments, scene=scene)).stdout
+
+    def scores(self, medium, folder):
+        return self.evaluated(medium, self.path(folder, "scene_dense.ply"), "--tolerance", "0.002",
+                              samples=RECALL_SAMPLES)
 
 
 class Densified(Simulated):

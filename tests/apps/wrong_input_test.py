@@ -7,7 +7,8 @@ import random
 import re
 
 import tiny_scene
-from programs import ProgramTest, cloud_size, depth_rows, files_below, main, read, write
+from programs import ProgramTest, cloud_size, files_below, main, read, write
+from readers import Dmap
 from tiny_scene import TinyScene
 from worlds import flat, housing, ply
 
@@ -166,7 +167,7 @@ class Densify(TinyScene):
         self.assertNotIn("The cloud is empty", said)
         merged = cloud_size(self.at("scene_dense.ply"))
         valid = sum(depth > 0 for name in files_below(self.path("work")) if name.endswith(".dmap")
-                    for row in depth_rows(read(self.path("work", name))) for depth in row)
+                    for row in Dmap(read(self.path("work", name))).rows for depth in row)
         self.assertEqual(merged, valid)
 
     def test_tiles(self):

@@ -8,7 +8,7 @@ import os
 import random
 import re
 
-from programs import cloud_size, files_below, grey_png, main, must, read, read_json, run, write
+from programs import cloud_size, files_below, main, must, png, read, read_json, run, write
 from readers import records
 from worlds import CLOSEUP, ROUGH, Simulated
 
@@ -156,7 +156,7 @@ class Noise(PortTest):
         folder = os.path.join(self.truth, "noise")
         for name in os.listdir(os.path.join(self.truth, "water")):
             # A PNG may be named .jpg, because the content tells the format.
-            write(os.path.join(folder, name), grey_png(
+            write(os.path.join(folder, name), png(
                 [bytes(min(255, max(0, round(rng.gauss(128, 40)))) for _ in range(320))
                  for _ in range(240)]))
         for medium, housing in (("water", self.housing()), ("air", None)):
