@@ -36,10 +36,10 @@ def reconstruct_command(*options, source=("--images", "images"), lens="lens", ho
             str(housing), "-o", str(out), "--programs", str(programs), *map(str, options)]
 
 
-def simulate(folder, preset, views, size, *more, samples=1):
+def simulate(folder, preset, views, size, *more):
     """Writes photographs under water of a scene into `folder`. `size`: (width, height) [px]."""
     must("SimulateUnderwater", "--preset", preset, "--views", views, "--width", size[0], "--height", size[1],
-         "--coarseness", 4, "--samples", samples, "--truth", 0, "--medium", "water", *more, "-o", folder)
+         "--coarseness", 4, "--samples", 1, "--truth", 0, "--medium", "water", *more, "-o", folder)
 
 
 class InFolder(unittest.TestCase):

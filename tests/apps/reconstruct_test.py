@@ -29,7 +29,7 @@ class Reconstruct(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = pathlib.Path(new_folder(cls.addClassCleanup))
         cls.scene = cls.folder / "scene"
-        simulate(cls.scene, "closeup", 6, (640, 480), samples=2)
+        simulate(cls.scene, "closeup", 6, (640, 480))
         cls.positions = cls.scene / "positions.txt"
         cls.positions.write_text(colmap_text.positions(cls.scene / "sparse"))
 
