@@ -70,8 +70,15 @@ class Mesh(Densified):
 
     def test_a_mesh_is_cleaned(self):
         folder = self.copy("air")
-        self.meshed(folder, "--mesh-file", "scene_dense_mesh.ply", "-o", "half", "--target-face-num", "500")
-        self.assertLess(abs(len(self.ply(folder, "half.ply").faces) - 500), 60)
+        clean = ("--mesh-file", "scene_dense_mesh.ply", "-o", "clean")
+        self.meshed(folder, *clean, "--target-face-num", "500")
+        self.assertLess(abs(len(self.ply(folder, "clean.ply").faces) - 500), 60)
+        faces = []
+        for length in ("0.01", "0.02"):
+            self.meshed(folder, *clean, "--edge-length", length)
+            faces.append(len(self.ply(folder, "clean.ply").faces))
+        # Half the length: four times as many faces, if the borders were the same.
+        self.assertGreater(faces[0], 2.5 * faces[1])
 
     def marks(self, folder, name):
         """The marks of the faces of a mesh without texture; None if it has no marks."""

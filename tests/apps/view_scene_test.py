@@ -121,6 +121,13 @@ class ViewFolder(ViewCase):
         self.succeeds(*self.view())
         self.assertEqual(contents(self.report), expected)
 
+    def test_a_large_cloud_is_thinned_out(self):
+        self.succeeds(*self.view("--max-points", 10))
+        scene = self.shown()
+        self.assertEqual(scene["all_points"], 35)
+        self.assertLess(scene["points"], 25)
+        self.assertEqual(sum(chunk["points"] for chunk in scene["chunks"]), scene["points"])
+
     def test_wrong_input_is_refused(self):
         write(self.path("work", "mine", "photo.jpg"), "Mine.")
         write(self.path("work", "theirs", "data", "files.json"), '{"index.html": "1"}')

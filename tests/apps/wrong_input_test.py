@@ -46,7 +46,11 @@ class InterfaceColmap(ProgramTest):
         write(path, tiny_scene.picture((0, 0, 0), 48, 48))
         self.refuses_import("0001.png: image is 48 x 48, but its camera is 96 x 72")
         os.remove(path)
-        self.refuses_import("0001.png")
+        self.refuses_import("0001.png: image not found (--allow-missing continues without it)")
+        said = self.succeeds(*self.convert("--allow-missing")).stdout
+        self.assertRegex(said, "warning: .*0001.png: image not found; it is not used")
+        self.assertRegex(said, "scene.mvs: 2 images, ")
+        os.remove(self.path("scene.mvs"))
         write(path, b"")
         self.refuses_import("0001.png")
         self.refuses_import("no-such-folder", "--image-folder", "no-such-folder")
