@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string>
 
-#include "base/console.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "densify/densify.h"
@@ -33,7 +32,7 @@ int run(int argc, char** argv) {
   const densify::Report report = densify::densify(
       options.settings,
       [&](const densify::SceneFacts& facts) { warn_of_options_without_effect(options, facts); },
-      Context(console_events()));
+      program_context(options.parsed));
   say_who_may_read(report, options);
   return 0;
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/console.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "base/parallel.h"
 #include "effective_lens.h"
 #include "stages.h"
 
@@ -37,8 +35,7 @@ void finish(const Options& options, const Input& input, const Refined& refined,
 int run(int argc, char** argv) {
   Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
-  const Context context(console_events());
-  const ThreadLimit threads(options.parsed.common.max_threads);
+  const Context context = program_context(options.parsed);
   if (!options.effective_lens.empty()) {
     write_effective_lenses(options);
     return 0;

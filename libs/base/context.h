@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The caller of a stage gets the events of the stage through a Context, and may stop the stage. A
-// function that warns, reports results or progress, or works long takes a Context as its last
-// argument. Without a Context, it is silent and cannot be stopped.
+// The caller of a stage gets the events of the stage through a Context, may stop the stage, and
+// limits its memory and its threads. A function that warns, reports results or progress, works long
+// or needs much memory takes a Context as its last argument. Without a Context, it is silent,
+// cannot be stopped and has no limits.
 #pragma once
 
 #include <fmt/core.h>
@@ -10,10 +11,13 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 
 #include "base/log.h"
+#include "base/memory_budget.h"
+#include "base/parallel.h"
 #include "base/progress.h"
 
 namespace axial {
@@ -39,12 +43,22 @@ class Stopped : public std::exception {
   const char* what() const noexcept override { return "stopped"; }
 };
 
+// What the work may use.
+struct Limits {
+  MemoryBudget memory = {};
+  // The number of threads of all parallel loops of the process (ThreadLimit in base/parallel.h)
+  // while the Context exists. Empty: the Context does not limit them.
+  std::optional<unsigned> threads = {};
+};
+
 class Context {
  public:
   Context() = default;
   // `sink` gets all events, from one thread at a time. It may be empty. After a request to stop by
   // the source of `stop`, check_stop() and the sinks of stage() throw Stopped.
-  explicit Context(EventSink sink, std::stop_token stop = {});
+  explicit Context(EventSink sink, std::stop_token stop = {}, const Limits& limits = {});
+  // For a part of the work of `whole`, which must exist as long as this Context.
+  Context(const Context& whole, MemoryBudget memory);
 
   // Each sends a line: `format` with `args` in place of its "{}" (fmt's syntax).
   template <class... Args>
@@ -68,6 +82,8 @@ class Context {
   // sink.
   ProgressSink stage(const std::string& title) const;
 
+  const MemoryBudget& memory() const { return memory_; }
+
   const std::stop_token& stop_token() const { return stop_; }
   bool stop_requested() const { return stop_.stop_requested(); }
   // Throws Stopped after a request to stop.
@@ -79,6 +95,8 @@ class Context {
 
   EventSink sink_;
   std::stop_token stop_;
+  MemoryBudget memory_;
+  std::optional<ThreadLimit> threads_;
   mutable std::mutex mutex_;
 };
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/context.h"
-#include "base/memory.h"
 #include "base/setting_names.h"
 #include "compare/changes.h"
 #include "compare/noise.h"
@@ -40,8 +39,6 @@ struct CompareOptions {
   SurveyPhotos photos = {};
   // Whether surveys are compared although they show different places (compare/same_place.h).
   bool allow_other_place = false;
-  // The memory that may be used. The need is checked before the maps are made.
-  MemoryAllowance memory = {};
   // For the fields `pixel`, "ground_sample_distance", `photos.least`, "min_views", and
   // `allow_other_place`.
   SettingNames name_of = own_name;

@@ -43,7 +43,8 @@ struct Report {
 //   input and options are used again (map_stages.h). The result has the same bytes for any
 //   number of threads and any max_memory.
 // * Inputs are never changed. An output file appears under its name only when it is complete.
-// * Memory stays below max_memory, and does not grow with the number of images, with three
+// * Memory stays below the limit of Context::memory() (max_memory; if there is none, 70 % of the
+//   free memory), and does not grow with the number of images, with three
 //   exceptions: the scene, one bit per pixel in fusion (of the views of a tile), and a cloud whose
 //   colours or normals are estimated from the whole cloud (estimate_colors or estimate_normals is
 //   1). Such a cloud is kept in memory in addition to max_memory.

@@ -125,16 +125,15 @@ using Job = std::variant<WholeRun, StageJob, TileJob, PlanJob, NeighbourListsJob
 
 // The options of a run. Paths are absolute.
 struct Options {
-  // The scene, its photographs and masks, and the memory of the run. The scene and the working
-  // folder, which also gets the depth maps, are required. All calibrated images are used. Errors
-  // and warnings name the options by survey.files.name_of.
+  // The scene, its photographs and masks. The scene and the working folder, which also gets the
+  // depth maps, are required. All calibrated images are used. Errors and warnings name the options
+  // by survey.files.name_of.
   survey::Options survey;
   ViewOptions views;
   MatchOptions matching;
   FusionOptions fusion;
   OutputOptions output;
   Job job = WholeRun();
-  unsigned max_threads = 0;  // largest number of threads; 0: as many as cores
 
   std::string name_of(std::string_view option) const { return survey.files.name_of(option); }
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/context.h"
-#include "base/memory.h"
 #include "base/setting_names.h"
 #include "map/map_block.h"
 #include "scene/local_frame.h"
@@ -38,8 +37,6 @@ struct WriteOptions {
   int samples = 0;                // along each side of a pixel, odd; 0: samples_per_pixel()
   double contour_interval = 0;    // height between contour lines [m]
   int longest_side = 2048;        // of the picture, without its strip [px]
-  // The memory that may be used. The need is checked before the first block is made.
-  MemoryAllowance memory = {};
   // Errors name the field contour_interval by name_of("contour_interval").
   SettingNames name_of = own_name;
 };

@@ -23,11 +23,10 @@ struct ReconstructOptions {
   // `clean.spurious` has a second effect: it is the `factor` of surface_without_long_edges()
   // (surface.h).
   CleanOptions clean;
-  bool only_region = false;     // use only points in Scene::region, if there is one
-  bool crop_to_region = true;   // remove faces with a corner outside of Scene::region, if any
-  std::uint64_t max_bytes = 0;  // limit of bytes_needed(); 0: no limit
-  // Errors name max_bytes by name_of("max_memory"), merge.min_distance by
-  // name_of("merge.min_distance"), and the number of tiles (tiled.h) by name_of("tiles").
+  bool only_region = false;    // use only points in Scene::region, if there is one
+  bool crop_to_region = true;  // remove faces with a corner outside of Scene::region, if any
+  // Errors name merge.min_distance by name_of("merge.min_distance"), and the number of tiles
+  // (tiled.h) by name_of("tiles").
   SettingNames name_of = own_name;
 };
 
@@ -45,7 +44,7 @@ std::uint64_t bytes_needed(std::size_t merged_points);
 // * a view is not a calibrated image of the scene,
 // * a position is not finite, or a weight is not from 0 to 1e6,
 // * fewer than four points remain after merging, or all points lie in a plane,
-// * bytes_needed() exceeds max_bytes,
+// * bytes_needed() exceeds the limit of Context::memory(),
 // * no surface is found, or clean() throws (clean.h).
 Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions& options = {},
                  const Context& context = {});
@@ -57,7 +56,8 @@ Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions&
 void check_points(const PointCloud& cloud, const Scene& scene, std::size_t first = 0);
 // Makes the mesh of points that are merged already. `rays`: of the same scene. The result has no
 // faces if there are fewer than four points, if no surface is found, or if cleaning leaves no face.
-// Throws an Error if bytes_needed() exceeds max_bytes, or if all points lie in a plane.
+// Throws an Error if bytes_needed() exceeds the limit of Context::memory(), or if all points lie in
+// a plane.
 Mesh reconstruct_merged(MergedPoints points, const Scene& scene, const ViewRays& rays,
                         const ReconstructOptions& options, const Context& context = {});
 

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 
-#include "base/memory.h"
 #include "io/openmvs/scene_with_cameras.h"
 #include "scene/resolution.h"
 
@@ -25,10 +24,7 @@ struct Options {
   int bit_depth = 0;
   ResolutionOptions resolution;       // at which photographs are read
   bool compares_photographs = false;  // see Survey::photograph_check
-  // The memory of the whole run. A program states here the bytes of the program itself.
-  MemoryAllowance memory{0, "max_memory", 96 * kMegabyte};
-  bool has_memory_limit = true;  // false: `memory` is not used
-  bool has_masks = true;         // false: the program does not use masks
+  bool has_masks = true;              // false: the program does not use masks
 };
 
 // Sets what is left out by the label of a program whose label -1 means black borders, and whose

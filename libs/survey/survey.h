@@ -68,7 +68,7 @@ void keep_inputs(std::span<const std::filesystem::path> outputs,
 // Reads the scene with its frame, lenses and ports. No photograph is read. `inputs` are the files
 // that belong to the scene (io::files_of_scene). Errors as for io::read_scene_with_cameras(), and
 // for too little memory.
-Survey open_scene(const Options& options);
+Survey open_scene(const Options& options, const Context& context = {});
 
 // Finds the photographs and their masks, and reads the headers of the photographs. All calibrated
 // images are used, or only the images that Options::views_file names. Photographs, masks and the

@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "base/memory_budget.h"
 #include "base/progress.h"
 #include "geometry/surface.h"
 #include "scene/mesh.h"
-#include "texture/memory.h"
 #include "texture/mesh_tiles.h"
 #include "texture/views.h"
 
@@ -46,7 +46,7 @@ struct VisibilityOptions {
 };
 
 struct ViewMemory {
-  Budget budget;                  // of find_face_views() with its result, besides the mesh
+  MemoryBudget budget;            // of find_face_views() with its result, besides the mesh
   std::uint64_t image_bytes = 0;  // of ImageSource while it makes an image, with the image
 };
 
