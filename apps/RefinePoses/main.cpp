@@ -28,7 +28,10 @@ void finish(const Options& options, const Input& input, const Refined& refined,
   judge(options, refined, results);
   const pose::Uncertainty known = write(options, input, refined, results, context);
   for (const std::string& line : uncertainty_lines(results, known)) log_info("{}", line);
-  if (!results.options.poses_known) log_info("{}", shape_line(known));
+  if (!results.options.poses_known) {
+    log_info("{}", shape_line(known));
+    log_info("{}", depth_line(known));
+  }
   judge_numbers(options, known, results);
 }
 
