@@ -3,15 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <map>
+#include <set>
 
 #include "base/atomic_file.h"
-#include "base/console.h"
 #include "base/context.h"
+#include "base/error.h"
 #include "base/first_error.h"
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/program.h"
+#include "base/same_file.h"
 #include "io/images/image.h"
 #include "options.h"
 #include "photographs.h"
@@ -49,22 +53,27 @@ void warn_of_repetitions(const targets::Photograph& photograph) {
 }
 
 targets::Photograph find(const NamedPhotograph& photograph, const Options& options) {
-  const cv::Mat pixels = io::read_photograph(photograph.file).pixels;
-  targets::Photograph found{photograph.name, pixels.size(),
-                            targets::find_targets(pixels, options.families)};
-  if (!options.pictures.empty())
-    write_pictures(options.pictures, io::in_8_bits(pixels, io::bits_used(pixels)), found);
-  return found;
+  io::Photograph read = io::read_photograph(photograph.file);
+  if (!read.opaque.empty()) read.pixels.setTo(0, read.opaque == 0);
+  return {photograph.name, read.pixels.size(),
+          targets::find_targets(read.pixels, options.families)};
 }
 
-// Memory grows with the photographs in flight: a few.
+std::uint64_t bytes_of(const NamedPhotograph& photograph) {
+  const io::ImageHeader header = io::read_image_header(photograph.file);
+  return io::bytes_needed(header) + targets::bytes_of_search(header.size);
+}
+
 std::vector<targets::Photograph> find_all(const std::vector<NamedPhotograph>& photographs,
-                                          const Options& options) {
+                                          const Options& options, const Context& context) {
+  std::uint64_t largest = 0;
+  for (const NamedPhotograph& photograph : photographs)
+    largest = std::max(largest, bytes_of(photograph));
+  const std::size_t in_flight = context.memory().items(largest, thread_count(), "a photograph");
   std::vector<targets::Photograph> found(photographs.size());
-  const Context console(console_events());
-  ProgressCounter done(console.stage("Searched photographs"), photographs.size());
+  ProgressCounter done(context.stage("Searched photographs"), photographs.size());
   FirstError error;
-  parallel_for(photographs.size(), [&](std::size_t i) {
+  for_each_in_flight(photographs.size(), in_flight, [&](std::size_t i) {
     error.run(i, [&] { found[i] = find(photographs[i], options); });
     done.add();
   });
@@ -72,17 +81,47 @@ std::vector<targets::Photograph> find_all(const std::vector<NamedPhotograph>& ph
   return found;
 }
 
+// The photographs are read again, so that few are in memory at a time.
+void write_all_pictures(const std::filesystem::path& folder,
+                        const std::vector<NamedPhotograph>& photographs,
+                        const std::vector<targets::Photograph>& found) {
+  write_folder(folder, [&](const std::filesystem::path& staging) {
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (found[i].targets.empty()) continue;
+      const cv::Mat pixels = io::read_photograph(photographs[i].file).pixels;
+      write_pictures(staging, io::in_8_bits(pixels, io::bits_used(pixels)), found[i]);
+    }
+  });
+}
+
 void report(const std::vector<targets::Photograph>& found) {
-  std::map<std::string, std::size_t> photographs_with;
-  std::size_t all = 0;
+  std::map<std::pair<std::size_t, std::string>, std::set<std::string>> photographs;
+  std::size_t places = 0;
   for (const targets::Photograph& photograph : found) {
     warn_of_repetitions(photograph);
-    for (const targets::Detection& target : photograph.targets)
-      ++photographs_with[target.label], ++all;
+    for (const targets::Detection& target : photograph.targets) {
+      photographs[{target.number, target.label}].insert(photograph.name);
+      ++places;
+    }
   }
-  log_info("{} targets at {} places in {} photographs", photographs_with.size(), all, found.size());
-  for (const auto& [label, count] : photographs_with)
-    if (count == 1) log_info("{}: is in one photograph only, so it has no place in space", label);
+  log_info("{} targets at {} places in {} photographs", photographs.size(), places, found.size());
+  for (const auto& [target, in] : photographs)
+    if (in.size() == 1)
+      log_info("{}: is in {} only, so it has no place in space", target.second, *in.begin());
+}
+
+// Pictures in the folder of the photographs would be searched by the next run.
+void check_outputs(const Options& options, const std::vector<NamedPhotograph>& photographs) {
+  for (const NamedPhotograph& photograph : photographs)
+    require_not_an_input(options.output, std::array{photograph.file}, "--output-file");
+  for (const std::filesystem::path& input : options.input) {
+    const std::string below = options.pictures.lexically_relative(input).string();
+    if (!options.pictures.empty() && !below.empty() && !below.starts_with(".."))
+      fail("--pictures {}: lies in the folder of the photographs, {}", options.pictures.string(),
+           input.string());
+  }
+  require_writable(options.output);
+  if (!options.pictures.empty()) require_writable_folder(options.pictures);
 }
 
 int run(int argc, char** argv) {
@@ -92,12 +131,12 @@ int run(int argc, char** argv) {
     draw(options);
     return 0;
   }
-  const ThreadLimit threads(options.parsed.common.max_threads);
+  const Context context = program_context(options.parsed);
   const std::vector<NamedPhotograph> photographs = photographs_of(options.input);
-  require_writable(options.output);
-  if (!options.pictures.empty()) make_folder(options.pictures);
-  const std::vector<targets::Photograph> found = find_all(photographs, options);
+  check_outputs(options, photographs);
+  const std::vector<targets::Photograph> found = find_all(photographs, options, context);
   targets::write_targets(options.output, options.families, found);
+  if (!options.pictures.empty()) write_all_pictures(options.pictures, photographs, found);
   report(found);
   log_info("Targets in {}", options.output.string());
   return 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/parse_number.h"
 #include "base/same_file.h"
@@ -21,14 +23,14 @@ T number_in(std::string_view word, const char* option, const std::string& text) 
 
 // "1-4,9": numbers and ranges of numbers.
 std::vector<std::size_t> numbers_of(const std::string& text) {
-  constexpr std::size_t kMost = 10000;
+  constexpr std::size_t kMost = 1'000'000;
   std::vector<std::size_t> numbers;
   for (const std::string_view word : split(text, ',')) {
     const auto ends = split(word, '-');
     if (ends.empty() || ends.size() > 2) fail("--plates {}: '{}' is not a range", text, word);
     const auto first = number_in<std::size_t>(ends.front(), "plates", text);
     const auto last = number_in<std::size_t>(ends.back(), "plates", text);
-    if (last < first || last - first > kMost) fail("--plates {}: '{}' is not a range", text, word);
+    if (last < first || last > kMost) fail("--plates {}: '{}' is not a range", text, word);
     for (std::size_t number = first; number <= last; ++number) numbers.push_back(number);
   }
   return numbers;
@@ -61,7 +63,8 @@ void declare(OptionList& list, Options& options) {
           [&](const std::string& text) { options.families = targets::parse_families(text); },
           "targets to find, at most one of each kind: circular12, circular14, circular16 or "
           "circular20; a dictionary of OpenCV's markers (APRILTAG_36h11, 4X4_50, ...)")
-      .add("pictures", &options.pictures, "also write a picture of each target to this folder")
+      .add("pictures", &options.pictures,
+           "also write a picture of each target to this folder, a subfolder for each photograph")
       .output_folder()
       .add("print", &options.print,
            "draw plates and bars to scale into this folder (.svg), and stop")
@@ -73,12 +76,30 @@ void declare(OptionList& list, Options& options) {
           "bars", [&](const std::string& text) { options.bars = bars_of(text); },
           "scale bars to draw, with the distance of the centres [m]: 1,2,0.5;3,4,0.5")
       .add_with_default("side", &options.side, "side of the plates to draw [m]")
-      .positive();
+      .range(0.005, 10);
+  list.add_max_memory();
+}
+
+// Each number is on one plate only.
+void require_different_targets(const Options& options) {
+  std::vector<std::size_t> numbers = options.plates;
+  for (const Bar& bar : options.bars) {
+    numbers.push_back(bar.first);
+    numbers.push_back(bar.second);
+  }
+  std::ranges::sort(numbers);
+  const auto same = std::ranges::adjacent_find(numbers);
+  if (same != numbers.end())
+    fail("--print: target {} would be drawn twice; each number must be on one plate only", *same);
 }
 
 void check(const Options& options) {
   if (!options.print.empty()) {
     if (!options.input.empty()) fail("--print: draws plates and reads no photographs");
+    for (const char* of_photographs : {"output-file", "pictures"})
+      if (given(options.parsed, of_photographs))
+        fail("--{}: is for photographs, but --print draws plates and stops", of_photographs);
+    require_different_targets(options);
     if (options.plates.empty() && options.bars.empty())
       fail("--print: needs --plates or --bars, the targets to draw");
     if (options.families.size() != 1)
@@ -87,6 +108,7 @@ void check(const Options& options) {
   }
   if (!options.plates.empty()) fail("--plates: needs --print, the folder for the drawings");
   if (!options.bars.empty()) fail("--bars: needs --print, the folder for the drawings");
+  if (given(options.parsed, "side")) fail("--side: needs --print, the folder for the drawings");
   if (options.output.empty()) fail("--output-file is required");
   require_not_an_input(options.output, options.input, "--output-file");
 }

@@ -2,29 +2,18 @@
 #include "photographs.h"
 
 #include <algorithm>
-#include <array>
 
 #include "base/error.h"
-#include "base/file_extension.h"
+#include "io/images/photograph_files.h"
 
 namespace axial::apps {
 namespace {
 
 namespace fs = std::filesystem;
 
-bool is_image(const fs::directory_entry& entry) {
-  constexpr std::array<std::string_view, 6> kExtensions{".jpg", ".jpeg", ".png",
-                                                        ".tif", ".tiff", ".bmp"};
-  return entry.is_regular_file() &&
-         std::ranges::find(kExtensions, lower_extension(entry.path())) != kExtensions.end();
-}
-
 void add_folder(const fs::path& folder, std::vector<NamedPhotograph>& photographs) {
-  const std::size_t before = photographs.size();
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-    if (is_image(entry))
-      photographs.push_back({entry.path(), entry.path().lexically_relative(folder).string()});
-  if (photographs.size() == before) fail("{}: contains no photographs", folder.string());
+  for (const fs::path& file : io::photographs_in_folder(folder, true))
+    photographs.push_back({file, file.lexically_relative(folder).string()});
 }
 
 }  // namespace

@@ -51,8 +51,9 @@ void simulate_scene(const Arguments& a, const simulate::Preset& preset,
   append(mesh, simulate::plate_mesh(plates.plates));
   log_info("{}: {} vertices, {} faces", a.preset.name, mesh.vertices.size(), mesh.faces.size());
   const simulate::RayScene scene(mesh);
-  const simulate::Shader shader = simulate::with_plates(
-      simulate::seabed_shader(mesh, scene, preset.texture), plates.plates, first_plate_face);
+  const simulate::Shader shader =
+      simulate::with_plates(simulate::seabed_shader(mesh, scene, preset.texture), plates.plates,
+                            first_plate_face, a.samples);
   if (!plates.plates.empty()) write_true_targets(folder, plates, scene, preset, a.medium);
   write_mesh(folder / "mesh.ply", mesh);
   if (preset.moved) write_change(folder / "change.json", preset, simulate::true_change(preset));

@@ -2,38 +2,20 @@
 #include "calibrate/photographs.h"
 
 #include <algorithm>
-#include <array>
 #include <opencv2/imgproc.hpp>
-#include <string_view>
 
 #include "base/error.h"
-#include "base/file_extension.h"
 #include "base/first_error.h"
 #include "base/parallel.h"
 #include "calibrate/see_board.h"
 #include "io/images/bit_depth.h"
 #include "io/images/image.h"
+#include "io/images/photograph_files.h"
 
 namespace axial::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_image_name(const fs::path& path) {
-  const std::string extension = lower_extension(path);
-  constexpr std::array<std::string_view, 6> kExtensions{".jpg", ".jpeg", ".png",
-                                                        ".tif", ".tiff", ".bmp"};
-  return std::ranges::find(kExtensions, extension) != kExtensions.end();
-}
-
-std::vector<fs::path> images_of(const fs::path& folder) {
-  std::vector<fs::path> images;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.is_regular_file() && is_image_name(entry.path())) images.push_back(entry.path());
-  std::ranges::sort(images);
-  if (images.empty()) fail("{}: contains no photographs", folder.string());
-  return images;
-}
 
 void check_size(const fs::path& photograph, cv::Size size, const io::ColmapCamera& lens) {
   if (static_cast<std::uint64_t>(size.width) != lens.width ||
@@ -65,7 +47,7 @@ std::vector<fs::path> photographs_in(std::span<const fs::path> input) {
   for (const fs::path& path : input) {
     if (!fs::exists(path)) fail("{}: does not exist", path.string());
     if (fs::is_directory(path))
-      std::ranges::copy(images_of(path), std::back_inserter(photographs));
+      std::ranges::copy(io::photographs_in_folder(path, false), std::back_inserter(photographs));
     else
       photographs.push_back(path);
   }

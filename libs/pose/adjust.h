@@ -162,7 +162,7 @@ struct Uncertainty {
   // Infinite if nothing determines it. 0 if poses are known, or with fewer than three images.
   double shape_sigma = 0;
   std::size_t least_linked = 0;  // the image with the largest part in `shape_sigma`
-  // depth_sigma() (depth_sigma.h). uncertainty() does not compute it, and leaves 0.
+  // depth_sigma() (depth_sigma.h); 0 if poses are known. uncertainty() does not compute it.
   double depth_sigma = 0;
 };
 

@@ -82,10 +82,24 @@ std::optional<Bundle> with_changes(Bundle bundle, const NumbersCovariance& numbe
   }
 }
 
+// The numbers of cameras that took photographs.
+std::size_t free_numbers(const Bundle& bundle, const AdjustOptions& options) {
+  std::vector<bool> observed(bundle.cameras.size());
+  for (const std::size_t image : images_of(bundle)) observed[bundle.images[image].camera] = true;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < bundle.cameras.size(); ++i) {
+    const BundleCamera& camera = bundle.cameras[i];
+    if (observed[i] && !camera.same_as)
+      count += static_cast<std::size_t>(std::ranges::count(options.unknowns(camera).free, true));
+  }
+  return count;
+}
+
 }  // namespace
 
 double depth_sigma(const Bundle& bundle, const AdjustOptions& options, const Context& context) {
   const NumbersCovariance numbers = covariance_of_numbers(bundle, options);
+  if (numbers.numbers.size() < free_numbers(bundle, options)) return kNothing;
   if (numbers.numbers.empty()) return 0;
   const Context silent({}, context.stop_token());
   const Bundle part =

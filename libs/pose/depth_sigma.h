@@ -15,7 +15,8 @@ namespace axial::pose {
 // covariance of the numbers, the numbers change by one standard deviation, and the bundle is
 // adjusted again with these numbers, with at most 1500 points or ten for each image. The result is
 // the root of the sum of the squared median changes of the distances, after the similarity of the
-// camera centres. 0 if there are no free numbers. Infinite if numbers that differ by one standard
+// camera centres. 0 if there are no free numbers. Infinite if nothing determines a
+// free number, if numbers that differ by one standard
 // deviation have no solution, and with fewer than three images with observations.
 double depth_sigma(const Bundle& bundle, const AdjustOptions& options, const Context& context = {});
 

@@ -17,6 +17,7 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kSlab = 0.004;                  // thickness [m]
 constexpr float kWhite = 0.75f, kBlack = 0.06f;  // reflectances
+constexpr double kLeastGap = 1.6;                // between centres of plates, in sides
 constexpr double kMostSlope = 0.6;               // of the ground under a plate, rise by run
 
 // The corners of the upper side, for a reader from the upper left one clockwise.
@@ -95,8 +96,9 @@ Eigen::Matrix3d axes_on(const Plane& plane, const Eigen::Vector2d& along) {
 }
 
 bool touches(const std::vector<Plate>& plates, const Eigen::Vector3d& centre, double side) {
-  return std::ranges::any_of(
-      plates, [&](const Plate& plate) { return (plate.centre - centre).norm() < 1.6 * side; });
+  return std::ranges::any_of(plates, [&](const Plate& plate) {
+    return (plate.centre - centre).norm() < kLeastGap * side;
+  });
 }
 
 // One plate (`bar` 0), or the two plates of a bar of this length [m], around a random place. Empty
@@ -160,6 +162,9 @@ bool hides(const RayScene& scene, const Lens& lens, const Port* port, const View
 std::vector<Plate> lay_plates(const RayScene& ground, const Lens& lens, std::span<const View> views,
                               const PlateLayout& layout) {
   constexpr int kTries = 2000;
+  for (const double bar : layout.bars)
+    if (bar < kLeastGap * layout.side)
+      fail("a bar of {} m is too short for plates of {} m", bar, layout.side);
   std::vector<Plate> plates;
   Dice dice(layout.seed);
   for (std::size_t i = 0; i < layout.single + layout.bars.size(); ++i) {
@@ -198,17 +203,18 @@ TriangleMesh plate_mesh(std::span<const Plate> plates) {
   return mesh;
 }
 
-Shader with_plates(Shader ground, std::vector<Plate> plates, std::uint32_t first_face) {
-  constexpr int kSamples = 4;  // along each side of the footprint of a ray, a third of a pixel
+Shader with_plates(Shader ground, std::vector<Plate> plates, std::uint32_t first_face,
+                   int samples) {
+  constexpr int kSamples = 4;  // along each side of the footprint of a ray
   const auto shared = std::make_shared<const std::vector<Plate>>(std::move(plates));
-  return [ground = std::move(ground), shared, first_face](const SurfacePoint& point) {
+  return [ground = std::move(ground), shared, first_face, samples](const SurfacePoint& point) {
     if (point.hit.face < first_face) return ground(point);
     const std::uint32_t face = point.hit.face - first_face;
     const Plate& plate = (*shared)[face / kPlateFaces];
     if (face % kPlateFaces >= 2) return Eigen::Vector3f(Eigen::Vector3f::Constant(kBlack));
     const Eigen::Vector3d place =
         plate.axes.transpose() * (point.position - plate.centre) * 2 / plate.side;
-    const double step = point.footprint / 3 * 2 / plate.side / kSamples;
+    const double step = point.footprint / samples * 2 / plate.side / kSamples;
     int white = 0;
     for (int i = 0; i < kSamples * kSamples; ++i)
       white += plate.white(place.x() + (i % kSamples - 1.5) * step,

@@ -32,7 +32,8 @@ struct PlateLayout {
 
 // Lays plates at random places that the views see, flat on the ground and without a touch: first
 // the single plates, then the two plates of each bar. The plates of a bar lie in one plane. The
-// patterns stay empty. `ground` is seen without a port. Throws an Error if there is no room.
+// patterns stay empty: set them before with_plates(). `ground` is seen without a port. Throws an
+// Error if a bar is shorter than 1.6 sides, and if there is no room. Precondition: there are views.
 std::vector<Plate> lay_plates(const RayScene& ground, const Lens& lens, std::span<const View> views,
                               const PlateLayout& layout);
 
@@ -41,8 +42,9 @@ inline constexpr std::uint32_t kPlateFaces = 10;
 TriangleMesh plate_mesh(std::span<const Plate> plates);
 
 // A shader for a mesh whose faces from `first_face` on are plate_mesh(plates): the pattern on the
-// upper sides, matt and averaged over the footprint; `ground` elsewhere.
-Shader with_plates(Shader ground, std::vector<Plate> plates, std::uint32_t first_face);
+// upper sides, matt and averaged over the footprint
+// of a ray, with `samples` rays along each side of a pixel; `ground` elsewhere.
+Shader with_plates(Shader ground, std::vector<Plate> plates, std::uint32_t first_face, int samples);
 
 // The image of a plate in a view. Pixel centres are integers.
 struct PlateImage {

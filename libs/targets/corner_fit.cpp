@@ -64,7 +64,7 @@ std::optional<CornerFit> fit_corner(const cv::Mat1f& picture, const Eigen::Vecto
   const Eigen::Vector2d first = before - corner, second = after - corner;
   const double reach = std::min({40.0, first.norm() / 2, second.norm() / 2});
   const Eigen::Vector4d wedge(corner.x(), corner.y(), inward(first, second), inward(second, first));
-  const std::vector<cv::Point> pixels = pixels_of(wedge, reach, std::clamp(cell - 1.2, 1.1, 6.0));
+  const std::vector<cv::Point> pixels = pixels_of(wedge, reach, std::clamp(cell - 1.4, 1.1, 6.0));
   const cv::Rect whole(0, 0, picture.cols, picture.rows);
   const auto inside = [&](const cv::Point& p) { return whole.contains(p); };
   if (pixels.empty() || !std::ranges::all_of(pixels, inside)) return std::nullopt;

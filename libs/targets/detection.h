@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -16,6 +17,15 @@ struct ImagePoint {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   double sigma = 0;
 };
+
+// The result of a fit. Where the pixels fit exactly, other errors of the model remain: `sigma` is
+// at least 0.002 px.
+inline ImagePoint image_point(const Eigen::Vector2d& pixel_with_integer_centres,
+                              const Eigen::Matrix2d& covariance) {
+  constexpr double kLeast = 0.002;
+  return {pixel_with_integer_centres.array() + 0.5,
+          std::sqrt(covariance.trace() / 2 + kLeast * kLeast)};
+}
 
 struct Detection {
   std::string label;       // label_of() (family.h)

@@ -12,6 +12,9 @@
 #include <opencv2/core.hpp>
 #include <optional>
 #include <span>
+#include <vector>
+
+#include "base/order_statistics.h"
 
 namespace axial::targets {
 
@@ -93,15 +96,28 @@ std::optional<EdgeFit<kShape>> fit_edge(const cv::Mat1f& picture, std::span<cons
   Eigen::VectorXd errors(count);
   Eigen::Matrix<double, Eigen::Dynamic, kCount> jacobian(count, kCount);
   if (!residuals(p.data(), errors.data(), jacobian.data())) return std::nullopt;
+  constexpr double kLeastBlur = 0.05, kMostBlur = 20, kLeastPivot = 1e-12;
+  const double blur = std::exp(p[kShape + 2]);
+  if (!(blur >= kLeastBlur && blur <= kMostBlur)) return std::nullopt;
+  const Eigen::Matrix<double, kCount, 1> norms = jacobian.colwise().norm();
+  if (!(norms.minCoeff() > 0)) return std::nullopt;
+  jacobian = jacobian * norms.cwiseInverse().asDiagonal();  // numbers have different units
   const Eigen::LDLT<Eigen::Matrix<double, kCount, kCount>> normal(jacobian.transpose() * jacobian);
-  if (normal.info() != Eigen::Success || !normal.isPositive()) return std::nullopt;
-  const double variance = errors.squaredNorm() / static_cast<double>(count - kCount);
+  if (normal.info() != Eigen::Success || normal.vectorD().minCoeff() < kLeastPivot)
+    return std::nullopt;
+  // Few pixels lie beyond the model, at the next cells of a small marker.
+  std::vector<double> sizes(errors.data(), errors.data() + count);
+  for (double& size : sizes) size = std::abs(size);
+  const double noise = kSigmasOfMedian * upper_median(std::move(sizes));
+  const double variance =
+      noise * noise * static_cast<double>(count) / static_cast<double>(count - kCount);
   const Eigen::Matrix<double, kCount, kCount> covariance =
-      variance * normal.solve(Eigen::Matrix<double, kCount, kCount>::Identity());
+      variance * norms.cwiseInverse().asDiagonal() *
+      normal.solve(Eigen::Matrix<double, kCount, kCount>(norms.cwiseInverse().asDiagonal()));
   if (!covariance.allFinite()) return std::nullopt;
   return EdgeFit<kShape>{p.template head<kShape>(),
                          covariance.template topLeftCorner<kShape, kShape>(), p[kShape],
-                         p[kShape + 1], std::exp(p[kShape + 2])};
+                         p[kShape + 1], blur};
 }
 
 }  // namespace axial::targets

@@ -34,6 +34,7 @@ std::vector<Family> parse_families(const std::string& text) {
            family.name);
     families.push_back(std::move(family));
   }
+  if (families.empty()) fail("'{}' names no family of targets", text);
   return families;
 }
 

@@ -24,8 +24,8 @@ struct Family {
 // another name.
 Family parse_family(const std::string& text);
 
-// Reads names of families, separated by commas. Throws an Error for a name that parse_family()
-// refuses, and for two families of one kind, because their labels would be equal.
+// Reads names of families, separated by commas. Throws an Error for no name, for a name that
+// parse_family() refuses, and for two families of one kind, because their labels would be equal.
 std::vector<Family> parse_families(const std::string& text);
 
 // The numbers of the family's targets: first, first + 1, ..., last. Rings are counted from 1,

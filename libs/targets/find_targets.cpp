@@ -5,20 +5,28 @@
 #include <opencv2/imgproc.hpp>
 #include <tuple>
 
+#include "base/order_statistics.h"
 #include "targets/ring_finder.h"
 #include "targets/square_finder.h"
 
 namespace axial::targets {
 namespace {
 
-// The brightness from 0 to 255, with the fractions of photographs of 16 bits.
+// Few pixels are brighter: stars of plankton and broken pixels do not count.
+float brightness_of_light_areas(const cv::Mat1f& grey) {
+  cv::Mat1f small;
+  const double shrink = std::min(1.0, 1000.0 / std::max(grey.cols, grey.rows));
+  cv::resize(grey, small, {}, shrink, shrink, cv::INTER_NEAREST);
+  return lower_quantile(std::vector<float>(small.begin(), small.end()), 0.999);
+}
+
+// The brightness from about 0 to 255, with the fractions of photographs of 16 bits.
 cv::Mat1f grey_of(const cv::Mat& photograph) {
   cv::Mat grey = photograph;
   if (photograph.channels() == 3) cv::cvtColor(photograph, grey, cv::COLOR_BGR2GRAY);
-  double low = 0, high = 0;
-  cv::minMaxLoc(grey, &low, &high);
   cv::Mat1f result;
-  grey.convertTo(result, CV_32F, grey.depth() == CV_8U || high <= 0 ? 1 : 255 / high);
+  grey.convertTo(result, CV_32F);
+  if (grey.depth() == CV_16U) result *= 255 / std::max(1.f, brightness_of_light_areas(result));
   return result;
 }
 
@@ -40,6 +48,13 @@ std::vector<Detection> without_repetitions(std::vector<Detection> all) {
 }
 
 }  // namespace
+
+std::uint64_t bytes_of_search(cv::Size size) {
+  // Grey and its negative, both pictures of twice the resolution with their means, masks and
+  // contours.
+  constexpr std::uint64_t kBytesPerPixel = 80;
+  return kBytesPerPixel * static_cast<std::uint64_t>(size.area());
+}
 
 std::vector<Detection> find_targets(const cv::Mat& photograph, std::span<const Family> families) {
   const cv::Mat1f grey = grey_of(photograph);

@@ -44,6 +44,8 @@ Pattern::Pattern(const Family& family, std::size_t number, const RingRadii& radi
 }
 
 bool Pattern::white(double x, double y) const {
+  const bool on_plate = std::abs(x) <= half_plate_ && std::abs(y) <= half_plate_;
+  if (!on_plate) return !cells_.empty();  // also for a place that is not a number
   if (!cells_.empty()) {
     const int column = static_cast<int>(std::floor(x + half_marker()));
     const int row = static_cast<int>(std::floor(y + half_marker()));

@@ -101,8 +101,8 @@ std::string bar_svg(const Family& family, std::size_t first, std::size_t second,
                                    "<text x=\"{}\" y=\"{}\" font-size=\"{}\" "
                                    "font-family=\"sans-serif\" text-anchor=\"middle\">centre to "
                                    "centre {:g} mm</text>\n",
-                                   (middle + far) / 2, middle, kText, 1000 * length);
-  return drawing(far + middle, 2 * middle + kText, elements);
+                                   (middle + far) / 2, 2 * middle + kText, kText, 1000 * length);
+  return drawing(far + middle, 2 * middle + 2 * kText, elements);
 }
 
 }  // namespace axial::targets

@@ -15,14 +15,14 @@ namespace axial::targets {
 namespace {
 
 constexpr int kWindow = 25;      // of the mean that separates black from white [px]
-constexpr double kLeastDot = 2;  // smaller half axis of a dot in the picture that is searched [px]
+constexpr double kLeastDot = 1;  // smaller half axis of a dot in the picture that is searched [px]
 constexpr double kMostDot = 14;  // larger half axis; larger dots are found at a lower resolution
 
 // True if the area inside the contour is about that of its ellipse, which has a usual shape.
 bool is_dot(const std::vector<cv::Point>& contour, const cv::RotatedRect& box) {
   const double small = static_cast<double>(std::min(box.size.width, box.size.height)) / 2;
   const double large = static_cast<double>(std::max(box.size.width, box.size.height)) / 2;
-  if (!(small >= kLeastDot - 1 && large <= kMostDot && small > 0.2 * large)) return false;
+  if (!(small >= kLeastDot && large <= kMostDot && small > 0.2 * large)) return false;
   const double area = cv::contourArea(contour);
   return std::abs(area / (std::numbers::pi * small * large) - 1) < 0.25;
 }
@@ -85,7 +85,7 @@ std::optional<Detection> read_target(const cv::Mat1f& grey, const Ellipse& dot,
   Detection found;
   found.label = label_of(family, *number);
   found.number = *number;
-  found.centre = {fit->dot.centre.array() + 0.5, std::sqrt(fit->covariance.trace() / 2)};
+  found.centre = image_point(fit->dot.centre, fit->covariance);
   found.dot = fit->dot.to_circle;
   found.width = 2 * ring->radii.plate * std::sqrt(half_axes(fit->dot).prod());
   found.agreement = agreement_of(grey, *fit, *ring, family.bits);

@@ -10,8 +10,8 @@
 
 namespace axial::targets {
 
-// Finds the targets of `family`, of kind ring, in `grey`: white on black, and black on white.
-// A target may be found several times.
+// Finds the targets of `family`, of kind ring, in `grey` (0 to about 255): white on black, and
+// black on white. A target may be found several times.
 std::vector<Detection> find_rings(const cv::Mat1f& grey, const Family& family);
 
 }  // namespace axial::targets

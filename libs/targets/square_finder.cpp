@@ -87,6 +87,21 @@ Eigen::Vector2d intersection_of_diagonals(const Corners& corners) {
   return corners[0] + along.x() * (corners[2] - corners[0]);
 }
 
+// The variance of each coordinate of the intersection [px^2], by differences.
+double variance_of_intersection(const Corners& corners, const std::array<ImagePoint, 4>& points) {
+  constexpr double kStep = 1e-3;  // [px]
+  const Eigen::Vector2d centre = intersection_of_diagonals(corners);
+  double variance = 0;
+  for (std::size_t k = 0; k < 4; ++k)
+    for (int axis = 0; axis < 2; ++axis) {
+      Corners moved = corners;
+      moved[k](axis) += kStep;
+      const double change = (intersection_of_diagonals(moved) - centre).norm() / kStep;
+      variance += std::pow(change * points[k].sigma, 2) / 2;
+    }
+  return variance;
+}
+
 struct Refined {
   Corners corners;
   std::array<ImagePoint, 4> points;
@@ -99,7 +114,7 @@ std::optional<Refined> refine(const cv::Mat1f& grey, const Corners& corners, dou
     const auto fit = fit_corner(grey, corners[(k + 3) % 4], corners[k], corners[(k + 1) % 4], cell);
     if (!fit) return std::nullopt;
     refined.corners[k] = fit->pixel;
-    refined.points[k] = {fit->pixel.array() + 0.5, std::sqrt(fit->covariance.trace() / 2)};
+    refined.points[k] = image_point(fit->pixel, fit->covariance);
     refined.blur += fit->blur / 4;
   }
   return refined;
@@ -130,6 +145,7 @@ cv::Mat1f cells_of(const cv::Mat1f& grey, const Corners& corners, int cells) {
   const Eigen::Matrix3d to_pixel =
       to_pattern_of(corners, static_cast<double>(cells - 2) / 2).inverse();
   constexpr int kSamples = 3;  // along each side of a cell
+  const cv::Rect box = box_of(corners) & cv::Rect(0, 0, grey.cols, grey.rows);
   cv::Mat2f places(cells * kSamples, cells * kSamples);
   for (int y = 0; y < places.rows; ++y)
     for (int x = 0; x < places.cols; ++x) {
@@ -138,10 +154,10 @@ cv::Mat1f cells_of(const cv::Mat1f& grey, const Corners& corners, int cells) {
         return i / kSamples + 0.5 + 0.25 * (i % kSamples - 1) - 0.5 * cells;
       };
       const Eigen::Vector2d p = (to_pixel * Eigen::Vector3d(place(x), place(y), 1)).hnormalized();
-      places(y, x) = {static_cast<float>(p.x()), static_cast<float>(p.y())};
+      places(y, x) = {static_cast<float>(p.x() - box.x), static_cast<float>(p.y() - box.y)};
     }
   cv::Mat1f samples;
-  cv::remap(grey, samples, places, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  cv::remap(grey(box), samples, places, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
   cv::resize(samples, samples, {cells, cells}, 0, 0, cv::INTER_AREA);
   return samples;
 }
@@ -186,9 +202,8 @@ double shortest_side(const Corners& corners) {
 
 Detection detection_of(const Refined& marker, const Pattern& pattern, double agrees) {
   Detection found;
-  double variance = 0;
-  for (const ImagePoint& p : marker.points) variance += p.sigma * p.sigma / 16;
-  found.centre = {intersection_of_diagonals(marker.corners).array() + 0.5, std::sqrt(variance)};
+  found.centre = {intersection_of_diagonals(marker.corners).array() + 0.5,
+                  std::sqrt(variance_of_intersection(marker.corners, marker.points))};
   found.corners = marker.points;
   found.width = std::sqrt(area_of(marker.corners)) * pattern.half_plate() / pattern.half_marker();
   found.agreement = agrees;

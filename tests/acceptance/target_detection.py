@@ -31,7 +31,7 @@ def judge(truth, found):
     there = {(image, plate["label"]): plate for image, plates in truth["images"]["water"].items() for plate in plates}
     counted = {key: plate for key, plate in there.items() if plate["width"] >= 24 and plate["oblique_degrees"] <= 60}
     labels = {plate["label"] for plate in truth["plates"]}
-    seen, false, errors, in_sigmas = 0, 0, [], []
+    seen, false, errors, in_sigmas = set(), 0, [], []
     for target in found:
         plate = there.get((target["image"], target["label"]))
         if plate is None:
@@ -39,10 +39,11 @@ def judge(truth, found):
             continue
         error = math.hypot(target["x"] - plate["x"], target["y"] - plate["y"])
         false += error > plate["width"] / 4
-        seen += (target["image"], target["label"]) in counted
+        if (target["image"], target["label"]) in counted:
+            seen.add((target["image"], target["label"]))
         errors.append(error ** 2 / 2)
         in_sigmas.append(error ** 2 / 2 / target["sigma"] ** 2)
-    return len(counted), seen, false, errors, in_sigmas
+    return len(counted), len(seen), false, errors, in_sigmas
 
 
 def root_mean(squares):

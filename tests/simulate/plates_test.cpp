@@ -95,7 +95,7 @@ TEST_F(Plates, TheShaderShowsThePatternOnTheUpperSideOnly) {
   const std::vector<Plate> one{{Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(1, -1, -1).asDiagonal(),
                                 0.2, [](double x, double y) { return x > 0 && y > 0; }}};
   const Shader shader =
-      with_plates([](const SurfacePoint&) { return Eigen::Vector3f(7, 7, 7); }, one, 100);
+      with_plates([](const SurfacePoint&) { return Eigen::Vector3f(7, 7, 7); }, one, 100, 3);
   const auto light = [&](double x, double y, std::uint32_t face) {
     SurfacePoint point{{x, y, 3}, {}, 1e-6};
     point.hit.face = face;
@@ -107,7 +107,11 @@ TEST_F(Plates, TheShaderShowsThePatternOnTheUpperSideOnly) {
   EXPECT_LT(light(1.05, 1.95, 102), 0.1);  // a side of the slab
 }
 
-TEST_F(Plates, TooLargePlatesAreRefused) {
+TEST_F(Plates, TooShortBarsAndTooLargePlatesAreRefused) {
+  EXPECT_THAT(test::error_of([&] {
+                lay_plates(scene_, preset_.lens, preset_.views, {0, {0.15}, 0.1, 3});
+              }),
+              testing::HasSubstr("a bar of 0.15 m is too short"));
   EXPECT_THAT(test::error_of([&] {
                 lay_plates(scene_, preset_.lens, preset_.views, {1, {}, 9, 3});
               }),

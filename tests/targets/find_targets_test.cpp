@@ -97,7 +97,6 @@ INSTANTIATE_TEST_SUITE_P(All, Plates,
                                          Conditions{"APRILTAG_36h11", 50, 150, 0, 0.1},
                                          Conditions{"4X4_50", 24, 50, 0.8, 0.25}));
 
-// Turned and inverted prints, and photographs of 16 bits.
 TEST(FindTargets, ReadsBlackOnWhite) {
   const Family family = parse_family("circular12");
   const PlateView view;
@@ -159,6 +158,29 @@ TEST(FindTargets, APlateThatIsCutOffOrCoveredIsNotFound) {
     cv::circle(covered, {170, 128}, 12, {90}, cv::FILLED);
     EXPECT_TRUE(find_targets(covered, families).empty());
   }
+}
+
+// A photograph whose 16 bits use 12, with a broken pixel.
+TEST(FindTargets, ReadsDarkPhotographsOf16Bits) {
+  for (const char* name : {"circular12", "4X4_50"}) {
+    const Family family = parse_family(name);
+    const PlateView view;
+    cv::Mat1w dark;
+    test::photograph(view, Pattern(family, 30)).convertTo(dark, CV_16U, 4);
+    dark(3, 3) = 65535;
+    const auto found = find_targets(dark, std::array{family});
+    ASSERT_EQ(found.size(), 1u) << name;
+    EXPECT_LT((found[0].centre.pixel - view.centre).norm(), 0.05);
+  }
+}
+
+// A fit to one brightness has no outline.
+TEST(FindTargets, PicturesWithoutContrastAreSearched) {
+  const auto families = parse_families("circular12,4X4_50");
+  for (const cv::Size& size : {cv::Size(1, 1), cv::Size(3, 200), cv::Size(100, 100)})
+    for (const double value : {0.0, 128.0, 255.0})
+      EXPECT_TRUE(
+          find_targets(cv::Mat1b(size, cv::saturate_cast<std::uint8_t>(value)), families).empty());
 }
 
 }  // namespace

@@ -55,8 +55,8 @@ TEST_F(FindTargets, ListsTheTargetsOfAFolderInColmapsPixels) {
   EXPECT_EQ(found[1].at("corners").size(), 4u);
   const nlohmann::json images = io::read_json(folder_ / "out.json").at("images");
   EXPECT_EQ(images.at(0).at("width"), 320);
-  EXPECT_TRUE(fs::exists(folder_ / "pictures" / "a_1-target-7.jpg"));
-  EXPECT_TRUE(fs::exists(folder_ / "pictures" / "b_1-tag-12.jpg"));
+  EXPECT_TRUE(fs::exists(folder_ / "pictures/a/1.png/target-7.jpg"));
+  EXPECT_TRUE(fs::exists(folder_ / "pictures/b/1.png/tag-12.jpg"));
 }
 
 TEST_F(FindTargets, TwoPlatesWithOneCodeAreNamed) {
@@ -70,14 +70,19 @@ TEST_F(FindTargets, TwoPlatesWithOneCodeAreNamed) {
   const std::string output = succeed_in("FindTargets", "1.png -o out.json --families 4X4_50");
   EXPECT_EQ(targets().size(), 2u);
   EXPECT_THAT(output, HasSubstr("1.png: shows tag 3 at 2 places"));
+  EXPECT_THAT(output, HasSubstr("tag 3: is in 1.png only"));
 }
 
 TEST_F(FindTargets, TheSameBytesForAnyNumberOfThreads) {
   for (int i = 0; i < 4; ++i)
     write(fmt::format("dive/{}.png", i), "circular12", static_cast<std::size_t>(i + 1),
           {100.0 + i, 100});
-  succeed_in("FindTargets", "dive -o one.json --max-threads 1");
-  succeed_in("FindTargets", "dive -o two.json --max-threads 2");
+  succeed_in("FindTargets", "dive -o one.json --max-threads 1 --pictures one");
+  succeed_in("FindTargets", "dive -o two.json --max-threads 2 --pictures two");
+  for (int i = 0; i < 4; ++i) {
+    const std::string picture = fmt::format("{}.png/target-{}.jpg", i, i + 1);
+    EXPECT_TRUE(read_file(folder_ / "one" / picture) == read_file(folder_ / "two" / picture));
+  }
   EXPECT_TRUE(read_file(folder_ / "one.json") == read_file(folder_ / "two.json"));
 }
 
@@ -90,7 +95,17 @@ TEST_F(FindTargets, WrongInputIsRefusedInOneLine) {
   refuses("absent -o out.json", "absent: does not exist");
   refuses("dive/1.png", "--output-file is required");
   refuses("dive/1.png -o dive/1.png", "--output-file");
-  refuses("dive/1.png dive -o out.json", "");
+  write("more/1.png", "circular12", 7, {100, 100});
+  refuses("-i dive/1.png -i more -o out.json", "1.png: has the same name as");
+  refuses("more -o more/1.png", "--output-file");
+  refuses("more -o out.json --pictures more/pictures", "lies in the folder of the photographs");
+  refuses("more -o out.json --side 0.2", "--side: needs --print");
+  refuses("more -o out.json --max-memory 20", "--max-memory");
+  refuses("more -o out.json --families ''", "names no family");
+  refuses("--print plates --plates 18446744073709551615 --families circular12", "is not a range");
+  refuses("--print plates --plates 1-3 --bars 3,4,0.5 --families circular12",
+          "target 3 would be drawn twice");
+  refuses("--print plates --plates 1 --families circular12 -o out.json", "--output-file: is for");
   refuses("dive/1.png -o out.json --families circular13", "'circular13' is not a family");
   refuses("dive/1.png -o out.json --families 4X4_50,5X5_50", "would have equal labels");
   refuses("dive/1.png -o out.json --plates 1", "--plates: needs --print");
