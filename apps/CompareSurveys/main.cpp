@@ -8,6 +8,7 @@
 #include "base/console.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/memory.h"
 #include "base/naming.h"
 #include "base/output_lock.h"
 #include "base/parallel.h"

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <string>
 
+#include "axial/base.h"
+
 namespace axial {
 
 // An estimate of the bytes that all processes together can still allocate without swapping: the
@@ -16,30 +18,10 @@ namespace axial {
 // Error if the system does not report MemAvailable.
 std::uint64_t available_memory(const std::filesystem::path& root = "/");
 
-inline constexpr std::uint64_t kMegabyte = 1'000'000;  // the unit of options in megabytes [bytes]
-
 // The bytes that a program may use: `megabytes` megabytes, or 70 % of available_memory() if
 // `megabytes` is 0. `setting`: the name of `megabytes` in messages. Throws an Error if `megabytes`
 // is 0 and the system does not report how much memory is available.
 std::uint64_t memory_limit(std::uint64_t megabytes, const std::string& setting);
-
-// The memory that a program may use, to check before each piece of work.
-struct MemoryAllowance {
-  // The limit. 0: 70 % of the memory that is available or used by this process, at the time of a
-  // call.
-  std::uint64_t megabytes = 0;
-  std::string setting;              // the name of `megabytes` in messages
-  std::uint64_t program_bytes = 0;  // of code and libraries, stacks and small blocks [bytes]
-
-  // Throws an Error if the program would exceed the limit with `bytes` more bytes than it uses now.
-  // The use is resident_memory(), but at least program_bytes, so that a program that has just begun
-  // decides like one that has loaded all of its code. The message is one line. It begins with
-  // `setting` and tells how many megabytes the program needs for `work`.
-  void require(std::uint64_t bytes, const std::string& work) const;
-
-  // The bytes between the use, as in require(), and the limit. 0 if the use is at the limit.
-  std::uint64_t left() const;
-};
 
 // The bytes of this process that are in memory now (resident set), including its code and its
 // libraries. The number differs by some pages from run to run.

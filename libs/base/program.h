@@ -8,8 +8,8 @@
 #include <set>
 #include <string>
 
+#include "axial/base.h"
 #include "base/option_list.h"
-#include "base/setting_names.h"
 
 namespace axial {
 

@@ -16,10 +16,10 @@
 #include <span>
 #include <vector>
 
+#include "axial/texture.h"
 #include "texture/adjacency.h"
 #include "texture/memory.h"
 #include "texture/mesh_tiles.h"
-#include "texture/texture_mesh.h"
 
 namespace axial::texture {
 

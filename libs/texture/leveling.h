@@ -9,13 +9,6 @@
 
 namespace axial::texture {
 
-struct LevelingOptions {
-  bool global = true;  // smooth corrections of whole charts (global_leveling.h)
-  bool local = true;   // corrections in a strip along the seams, see level_charts()
-  GlobalLevelingOptions global_options;
-  int strip = 20;  // width of the strip [px]; the local correction reaches zero at this distance
-};
-
 // The corrections at the seams of all charts.
 struct Corrections {
   SeamColors colors;                    // without corrections

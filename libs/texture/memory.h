@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/setting_names.h"
+#include "axial/base.h"
 
 namespace axial::texture {
 
