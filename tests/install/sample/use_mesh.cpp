@@ -35,7 +35,9 @@ void print_refusal(const char* name, const Stage& stage) {
 
 int main() {
   axial::Mesh mesh = octahedron();
-  std::printf("mesh: %zu faces\n", axial::mesh::clean(mesh).faces.size());
+  axial::mesh::CleanOptions small;
+  small.spurious = small.cut_off = 0;
+  std::printf("mesh: %zu faces\n", axial::mesh::clean(mesh, small).faces.size());
   const auto frame = axial::map::frame_with_up({0, 0, 1}, {});
   std::printf("map: %d columns\n", axial::map::grid_around(mesh, frame, 0.1).columns);
   axial::compare::CompareOptions options;
