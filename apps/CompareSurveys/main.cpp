@@ -5,13 +5,11 @@
 #include <system_error>
 #include <vector>
 
-#include "base/console.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/naming.h"
 #include "base/output_lock.h"
-#include "base/parallel.h"
 #include "belong/surface_check.h"
 #include "compare/write_changes.h"
 #include "geometry/seen_part.h"
@@ -55,9 +53,9 @@ Mesh read_shape(const fs::path& path, const fs::path& scene, const LocalFrame& f
   return mesh;
 }
 
-Mesh read_survey(const Settings& settings, const fs::path& path, const fs::path& scene,
-                 const LocalFrame& frame) {
-  settings.compare.memory.require(io::bytes_to_read_mesh(path), "reading " + path.string());
+Mesh read_survey(const fs::path& path, const fs::path& scene, const LocalFrame& frame,
+                 const Context& context) {
+  context.memory().require(io::bytes_to_read_mesh(path), "reading " + path.string());
   Mesh mesh = read_shape(path, scene, frame);
   mesh.colors = {};
   naming(path, [&] { check_mesh(mesh); });
@@ -83,8 +81,7 @@ std::vector<geometry::PosedCamera> read_photos(const Settings& settings, const f
   survey::Options options;
   options.files.scene = path;
   options.files.working_folder = settings.working_folder;
-  options.memory = settings.compare.memory;
-  survey::Survey scene = survey::open_scene(options);
+  survey::Survey scene = survey::open_scene(options, context);
   enter(LocalFrame{frame.origin - scene.frame.origin}, scene.scene);
   photos = geometry::posed_cameras(scene.scene);
   if (photos.empty()) fail("{}: has no calibrated image", path.string());
@@ -93,9 +90,9 @@ std::vector<geometry::PosedCamera> read_photos(const Settings& settings, const f
 }
 
 // A frame near the mesh of the earlier survey.
-LocalFrame frame_of_survey(const Settings& settings, const fs::path& path, const fs::path& scene) {
+LocalFrame frame_of_survey(const fs::path& path, const fs::path& scene, const Context& context) {
   if (const LocalFrame lost = lost_offset(path, scene); !lost.is_world()) return lost;
-  settings.compare.memory.require(io::bytes_to_read_mesh(path), "reading " + path.string());
+  context.memory().require(io::bytes_to_read_mesh(path), "reading " + path.string());
   return frame_near(io::mesh_place(path).first_vertex);
 }
 
@@ -125,13 +122,12 @@ struct NearSide {
 };
 
 // Removes stray faces of the survey if its photographs are known.
-NearSide near_side(const Settings& settings, const fs::path& path,
-                   const std::vector<geometry::PosedCamera>& photos, Mesh& mesh,
-                   const Context& context) {
+NearSide near_side(const fs::path& path, const std::vector<geometry::PosedCamera>& photos,
+                   Mesh& mesh, const Context& context) {
   return naming(path, [&]() -> NearSide {
     const Eigen::Vector3d turned = compare::mean_normal(mesh);
     if (photos.empty()) return {path, false, turned};
-    settings.compare.memory.require(geometry::bytes_of_sights(mesh), "what the cameras see");
+    context.memory().require(geometry::bytes_of_sights(mesh), "what the cameras see");
     const geometry::SeenPart part = geometry::find_seen_part(mesh, photos);
     geometry::warn_if_inside_out(part, path, context);
     geometry::warn_of_strays(part, path, mesh.faces.size(), context);
@@ -250,17 +246,15 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
   Settings settings = options.settings;
-  settings.compare.memory = {settings.max_memory, "--max-memory", 96 * kMegabyte};
-  const Context context(console_events());
-  const ThreadLimit limit(options.parsed.common.max_threads);
+  const Context context = program_context(options.parsed);
   compare::ChangeFacts facts{settings.before.filename().string(),
                              settings.after.filename().string()};
   if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg, settings.compare.name_of);
   const OutputLock lock = lock_output(change_files(settings).difference);
-  const LocalFrame frame = frame_of_survey(settings, settings.before, settings.scene_before);
+  const LocalFrame frame = frame_of_survey(settings.before, settings.scene_before, context);
   facts.mesh_frame = frame;
-  Mesh before = read_survey(settings, settings.before, settings.scene_before, frame);
-  Mesh after = read_survey(settings, settings.after, settings.scene_after, frame);
+  Mesh before = read_survey(settings.before, settings.scene_before, frame, context);
+  Mesh after = read_survey(settings.after, settings.scene_after, frame, context);
   settings.compare.photos.before =
       read_photos(settings, settings.scene_before, frame, {before, settings.before}, context);
   settings.compare.photos.after =
@@ -268,9 +262,9 @@ int run(int argc, char** argv) {
   return_freed_memory();
   facts.aligned = settings.compare.align;
   const NearSide near_before =
-      near_side(settings, settings.before, settings.compare.photos.before, before, context);
+      near_side(settings.before, settings.compare.photos.before, before, context);
   const NearSide near_after =
-      near_side(settings, settings.after, settings.compare.photos.after, after, context);
+      near_side(settings.after, settings.compare.photos.after, after, context);
   const map::MapFrame map_frame = place_map(settings, before, frame, near_before, near_after);
   facts.is_georeferenced = has_system(settings, frame) && map_frame.axes.isIdentity(0);
   keep_inputs(settings);

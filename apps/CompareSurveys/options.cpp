@@ -30,7 +30,7 @@ void declare_io(OptionList& list, Settings& settings) {
       .add("output-file,o", &settings.output,
            "begin of the names of the outputs, which go on with .change (<input>)")
       .output_file()
-      .add_max_memory(&settings.max_memory);
+      .add_max_memory();
 }
 
 void declare_map(OptionList& list, Raw& raw, Settings& settings) {

@@ -20,7 +20,6 @@ struct Settings {
   std::optional<Eigen::Vector3d> up;  // in the world; empty: see place_map() in main.cpp
   int epsg = 0;                       // 0: no coordinate reference system
   compare::CompareOptions compare;
-  std::uint64_t max_memory = 0;  // [MB]; 0: 70 % of the free memory
 };
 
 struct Options {

@@ -2,7 +2,6 @@
 #include <string>
 
 #include "axial/densify.h"
-#include "base/console.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "options.h"
@@ -33,7 +32,7 @@ int run(int argc, char** argv) {
   const densify::Report report = densify::densify(
       options.settings,
       [&](const densify::SceneFacts& facts) { warn_of_options_without_effect(options, facts); },
-      Context(console_events()));
+      program_context(options.parsed));
   say_who_may_read(report, options);
   return 0;
 }

@@ -77,7 +77,7 @@ void declare_io(OptionList& list, densify::Options& settings) {
                         "overwrite depth maps of other programs in the working folder")
       .sets("overwrite_dmaps true", " 1")
       .add_max_memory(
-          &settings.survey.memory.megabytes,
+          kProgramBytes,
           "largest memory to use [MB] (0: 70 % of the free memory); --estimate-colors 1 and "
           "--estimate-normals 1 keep the whole cloud in additional memory");
 }
@@ -305,7 +305,6 @@ void convert(const Raw& raw, Options& options) {
                                                   : static_cast<RegionMode>(int(raw.estimate_roi));
   settings.fusion.two_if_undisputed = !given(options.parsed, "number-views-fuse");
   settings.matching.pictures = pictures_of(common.verbosity);
-  settings.max_threads = common.max_threads;
   settings.survey.files.name_of = options.parsed.option_of;
   settings.job = job_of(raw, options.parsed);
   take_tiling(raw, options.parsed, settings);

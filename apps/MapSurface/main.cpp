@@ -10,7 +10,6 @@
 
 #include "axial/map.h"
 #include "axial/texture.h"
-#include "base/console.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -30,7 +29,6 @@
 #include "settings.h"
 #include "survey/photographs.h"
 #include "texture/face_views.h"
-#include "texture/memory.h"
 #include "texture/photograph_source.h"
 
 namespace axial::apps {
@@ -67,13 +65,13 @@ void remove_stale_maps(const Settings& settings) {
 }
 
 // The mesh, with its textures if it has some.
-TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame) {
+TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame, const Context& context) {
   const std::string work = "reading " + settings.mesh.string();
   const std::uint64_t bytes = io::bytes_to_read_mesh(settings.mesh);
-  settings.survey.memory.require(bytes, work);
+  context.memory().require(bytes, work);
   TexturedMesh mesh;
   if (io::is_textured_mesh(settings.mesh)) {
-    settings.survey.memory.require(bytes + io::bytes_to_read_textures(settings.mesh), work);
+    context.memory().require(bytes + io::bytes_to_read_textures(settings.mesh), work);
     mesh = io::read_textured_mesh_of_scene(frame, settings.mesh);
   } else {
     mesh.mesh = io::read_mesh_of_scene(frame, settings.mesh);
@@ -110,7 +108,7 @@ std::vector<Eigen::Vector3d> centres_of(const survey::Survey& survey) {
 // (geometry::SeenPart::facing).
 Eigen::Vector3d keep_seen_part(const Settings& settings, const survey::Survey& survey,
                                TexturedMesh& mesh, const Context& context) {
-  settings.survey.memory.require(geometry::bytes_of_sights(mesh.mesh), "what the cameras see");
+  context.memory().require(geometry::bytes_of_sights(mesh.mesh), "what the cameras see");
   const geometry::SeenPart part =
       geometry::find_seen_part(mesh.mesh, survey::posed_cameras(survey));
   geometry::warn_if_inside_out(part, settings.mesh, context);
@@ -154,9 +152,10 @@ void require_resolved(const map::MapGrid& grid, const survey::Survey& survey) {
         survey.options.files.name_of("ground_sample_distance"));
 }
 
-double pixel_of(const Settings& settings, const Mesh& mesh, const survey::Survey& survey) {
+double pixel_of(const Settings& settings, const Mesh& mesh, const survey::Survey& survey,
+                const Context& context) {
   if (settings.pixel > 0) return settings.pixel;
-  settings.survey.memory.require(map::bytes_of_pixel_width(mesh), "the width of a pixel");
+  context.memory().require(map::bytes_of_pixel_width(mesh), "the width of a pixel");
   return map::rounded_width(map::median_pixel_width(mesh, survey::posed_cameras(survey)));
 }
 
@@ -173,7 +172,7 @@ void warn_of_local_coordinates(const Settings& settings, const LocalFrame& frame
 // Heights are along z if the coordinates of the scene are those of a reference system: if the scene
 // has an offset, or if the user names the system.
 PlacedMap place_map(const Settings& settings, const Mesh& mesh, const survey::Survey& survey,
-                    const Eigen::Vector3d& facing) {
+                    const Eigen::Vector3d& facing, const Context& context) {
   const LocalFrame& frame = survey.frame;
   const bool has_system = !frame.is_world() || settings.epsg > 0;
   const Eigen::Vector3d up = settings.up  ? *settings.up
@@ -184,7 +183,7 @@ PlacedMap place_map(const Settings& settings, const Mesh& mesh, const survey::Su
   map.mesh_frame = frame;
   map.frame = map::frame_with_up(up, frame);
   map.is_georeferenced = has_system && map.frame.axes.isIdentity(0);
-  map.grid = map::grid_around(mesh, map.frame, pixel_of(settings, mesh, survey),
+  map.grid = map::grid_around(mesh, map.frame, pixel_of(settings, mesh, survey, context),
                               settings.survey.files.name_of);
   require_resolved(map.grid, survey);
   const auto& axes = map.frame.axes;
@@ -235,23 +234,19 @@ FaceFacts facts_of(const Mesh& mesh, const texture::FaceViews& seen,
   return facts;
 }
 
-// The memory [bytes] that is left besides FaceFacts, at least 1, because 0 stands for no limit.
-// Splitting adds few faces to a large mesh.
-std::uint64_t left_for_views(const Mesh& mesh, const Settings& settings) {
-  const std::uint64_t left = settings.survey.memory.left();
-  const std::uint64_t facts = bytes_of_facts(mesh);
-  return left > facts ? left - facts : 1;
+// What is left besides FaceFacts. Splitting adds few faces to a large mesh.
+MemoryBudget left_for_views(const Mesh& mesh, const MemoryBudget& memory) {
+  const auto facts = memory.reserve(bytes_of_facts(mesh));
+  return memory.share();
 }
 
 // The views of the faces of a mesh that has its textures.
-FaceFacts look_at_faces(const Mesh& mesh, const Settings& settings,
-                        const survey::Photographs& photographs,
+FaceFacts look_at_faces(const Mesh& mesh, const survey::Photographs& photographs,
                         const std::optional<map::HeightErrors>& errors, const Context& context) {
   const texture::FaceViews seen = texture::find_face_views(
       mesh, survey::posed_cameras(photographs.survey()), texture::source_of(photographs), {},
       context.stage("Numbers of views"),
-      {texture::Budget(left_for_views(mesh, settings), settings.survey.files.name_of),
-       photographs.bytes_to_read_color()});
+      {left_for_views(mesh, context.memory()), photographs.bytes_to_read_color()});
   return facts_of(mesh, seen, errors);
 }
 
@@ -261,15 +256,15 @@ TexturedMesh textured(TexturedMesh mesh, const Settings& settings,
                       const std::optional<map::HeightErrors>& errors, FaceFacts& facts,
                       const Context& context) {
   texture::Options options;
-  options.max_bytes = left_for_views(mesh.mesh, settings);
   options.image_bytes = photographs.bytes_to_read_color();
   options.name_of = settings.survey.files.name_of;
   options.take_views = [&](const Mesh& split, const texture::FaceViews& seen) {
     facts = facts_of(split, seen, errors);
   };
+  const Context texturing(context, left_for_views(mesh.mesh, context.memory()));
   TexturedMesh result =
       texture::texture_mesh(std::move(mesh.mesh), survey::posed_cameras(photographs.survey()),
-                            texture::source_of(photographs), options, nullptr, context);
+                            texture::source_of(photographs), options, nullptr, texturing);
   return_freed_memory();
   return result;
 }
@@ -281,7 +276,6 @@ void write(const Settings& settings, const TexturedMesh& mesh, const FaceFacts& 
   options.is_georeferenced = place.is_georeferenced;
   options.mesh_frame = place.mesh_frame;
   options.contour_interval = settings.contours;
-  options.memory = settings.survey.memory;
   options.name_of = settings.survey.files.name_of;
   const map::MapFiles files = map_files(settings);
   const map::MapReport report = map::write_maps(
@@ -300,13 +294,12 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
   const Settings& settings = options.settings;
-  const Context context(console_events());
-  const ThreadLimit limit(options.parsed.common.max_threads);
+  const Context context = program_context(options.parsed);
   const std::string crs =
       settings.epsg > 0 ? map::crs_of_epsg(settings.epsg, settings.survey.files.name_of) : "";
   const OutputLock lock = lock_output(map_files(settings).heights);
-  survey::Survey survey = survey::open_scene(settings.survey);
-  TexturedMesh mesh = read_mesh(settings, survey.frame);
+  survey::Survey survey = survey::open_scene(settings.survey, context);
+  TexturedMesh mesh = read_mesh(settings, survey.frame, context);
   warn_of_local_coordinates(settings, survey.frame);
   belong::check_surface(survey.scene, belong::shape_of(mesh.mesh), {settings.mesh, survey.file()},
                         context);
@@ -317,7 +310,7 @@ int run(int argc, char** argv) {
   const survey::Photographs photographs(survey);
   naming(settings.mesh, [&] {
     const Eigen::Vector3d facing = keep_seen_part(settings, survey, mesh, context);
-    const PlacedMap place = place_map(settings, mesh.mesh, survey, facing);
+    const PlacedMap place = place_map(settings, mesh.mesh, survey, facing, context);
     survey.keep_inputs(map_files(settings).all(), "--output-file");
     std::optional<map::HeightErrors> errors;
     if (settings.image_noise > 0)
@@ -327,7 +320,7 @@ int run(int argc, char** argv) {
     if (mesh.textures.empty())
       mesh = textured(std::move(mesh), settings, photographs, errors, facts, context);
     else
-      facts = look_at_faces(mesh.mesh, settings, photographs, errors, context);
+      facts = look_at_faces(mesh.mesh, photographs, errors, context);
     return_freed_memory();
     already_named([&] { photographs.report(context); });
     write(settings, mesh, facts, place, crs, context);

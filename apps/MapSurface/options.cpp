@@ -31,7 +31,7 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
            "first, as by TextureMesh")
       .add("output-file,o", &settings.output, "begin of the names of the maps (<input>_map)")
       .output_file()
-      .add_max_memory(&settings.survey.memory.megabytes);
+      .add_max_memory();
 }
 
 void declare_map(OptionList& list, Raw& raw, Settings& settings) {
@@ -89,7 +89,6 @@ void convert(const Raw& raw, Options& options) {
       output_or(settings.output, without_known_extension(scene) += "_map", "--output-file");
   settings.up = map::parse_up(raw.up, settings.epsg, options.parsed.option_of);
   take_photographs(options, raw, settings.survey);
-  settings.survey.memory.setting = "--max-memory";
 }
 
 }  // namespace

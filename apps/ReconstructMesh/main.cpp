@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "base/console.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/naming.h"
 #include "base/output_lock.h"
-#include "base/parallel.h"
 #include "belong/surface_check.h"
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/point_source.h"
@@ -28,8 +26,8 @@ LockUse lock_use(const Options& options) {
   return options.tiling.tile ? LockUse::shared : LockUse::alone;
 }
 
-survey::Survey open(const Options& options) {
-  survey::Survey survey = survey::open_scene(options.survey);
+survey::Survey open(const Options& options, const Context& context) {
+  survey::Survey survey = survey::open_scene(options.survey, context);
   survey.add_inputs(std::vector{cloud_file(options)});
   survey.add_inputs(io::files_of_mesh(options.mesh));
   survey.keep_inputs(std::vector{options.output}, "--output-file");
@@ -41,7 +39,7 @@ Mesh reconstruct(const io::SceneWithCameras& scene, const Options& options,
                  const Context& context) {
   const fs::path file = cloud_file(options);
   if (!file.empty())
-    options.survey.memory.require(io::bytes_to_read_cloud(file), "reading " + file.string());
+    context.memory().require(io::bytes_to_read_cloud(file), "reading " + file.string());
   PointCloud cloud =
       file.empty() ? cloud_of(scene.scene) : io::read_cloud_of_scene(scene.frame, file);
   const fs::path& source = file.empty() ? options.survey.files.scene : file;
@@ -57,22 +55,22 @@ Mesh reconstruct(const io::SceneWithCameras& scene, const Options& options,
 // Sets `keep` if the mesh has marks of unseen faces.
 Mesh clean_given(const io::SceneWithCameras& scene, const Options& options, bool& keep,
                  const Context& context) {
-  options.survey.memory.require(io::bytes_to_read_mesh(options.mesh),
-                                "reading " + options.mesh.string());
+  context.memory().require(io::bytes_to_read_mesh(options.mesh),
+                           "reading " + options.mesh.string());
   const Mesh mesh = io::read_mesh_of_scene(scene.frame, options.mesh);
   belong::check_surface(scene.scene, belong::shape_of(mesh),
                         {options.mesh, options.survey.files.scene}, context);
   keep = keep || !mesh.unseen.empty();
-  options.survey.memory.require(mesh::bytes_to_clean(mesh.vertices.size()),
-                                "cleaning " + options.mesh.string());
+  context.memory().require(mesh::bytes_to_clean(mesh.vertices.size()),
+                           "cleaning " + options.mesh.string());
   return naming(options.mesh, [&] { return mesh::clean(mesh, options.reconstruct.clean); });
 }
 
 // Removes or marks the surface that no two cameras see.
 Mesh without_unseen(Mesh mesh, const io::SceneWithCameras& scene, const Options& options, bool keep,
                     const Context& context) {
-  options.survey.memory.require(mesh::bytes_of_unseen(mesh),
-                                "finding the surface that no two cameras see");
+  context.memory().require(mesh::bytes_of_unseen(mesh),
+                           "finding the surface that no two cameras see");
   const fs::path& source = options.mesh.empty() ? options.survey.files.scene : options.mesh;
   mesh::UnseenOptions unseen;
   unseen.keep = keep;
@@ -100,14 +98,12 @@ void write(const fs::path& file, const Mesh& mesh, const LocalFrame& frame,
 }
 
 int run(int argc, char** argv) {
-  Options options = parse_command_line(argc, argv);
+  const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
-  const Context context(console_events());
-  const ThreadLimit threads(options.parsed.common.max_threads);
+  const Context context = program_context(options.parsed);
   const OutputLock lock = lock_output(options.output, lock_use(options));
-  const survey::Survey scene = open(options);
-  options.reconstruct.max_bytes = memory_limit(options.survey.memory.megabytes, "--max-memory");
+  const survey::Survey scene = open(options, context);
   if (options.tiling.tile) {
     make_tile(scene, options, context);
     return 0;

@@ -32,7 +32,7 @@ void declare_io(OptionList& list, Raw& raw, Options& options) {
                         "format of the mesh: ply, obj or glb; if it is not given, the extension of "
                         "--output-file decides")
       .sets("type")
-      .add_max_memory(&options.survey.memory.megabytes)
+      .add_max_memory(60 * kMegabyte)
       .add_with_default("tiles", &options.tiling.count,
                         "make the mesh in this many parts, so that less memory is needed")
       .range(1, kMostTiles)
@@ -131,7 +131,6 @@ void warn_of_no_effect(const Options& options) {
 
 Options parse_command_line(int argc, const char* const* argv) {
   Options options;
-  options.survey.memory = {0, "--max-memory", 60 * kMegabyte};
   Raw raw;
   ProgramOptions program{"ReconstructMesh",
                          "reconstructs a mesh from a dense cloud, in air and under water",

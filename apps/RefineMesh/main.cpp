@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
-#include "base/console.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/naming.h"
 #include "base/output_lock.h"
-#include "base/parallel.h"
 #include "belong/surface_check.h"
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/point_source.h"
@@ -32,7 +30,7 @@ fs::path state_file(const Options& options) {
 }
 
 survey::Survey open(const Options& options, const Context& context) {
-  survey::Survey survey = survey::open_scene(options.survey);
+  survey::Survey survey = survey::open_scene(options.survey, context);
   survey::find_photographs(survey, context);
   survey.add_inputs(io::files_of_mesh(options.mesh));
   survey.keep_inputs(std::vector{options.output, state_file(options)}, "--output-file");
@@ -42,8 +40,8 @@ survey::Survey open(const Options& options, const Context& context) {
 // Sets `has_marks` if faces of the mesh are marked as unseen. The result has no marks.
 Mesh read_mesh(const Options& options, const LocalFrame& frame, bool& has_marks,
                const Context& context) {
-  options.survey.memory.require(io::bytes_to_read_mesh(options.mesh),
-                                "reading " + options.mesh.string());
+  context.memory().require(io::bytes_to_read_mesh(options.mesh),
+                           "reading " + options.mesh.string());
   Mesh mesh = io::read_mesh_of_scene(frame, options.mesh);
   naming(options.mesh, [&] { check_mesh(mesh); });
   if (mesh.faces.empty()) fail("{}: the mesh has no faces", options.mesh.string());
@@ -54,31 +52,31 @@ Mesh read_mesh(const Options& options, const LocalFrame& frame, bool& has_marks,
   if (options.decimate == 1) return mesh;
   mesh::CleanOptions fewer = options.cleaning;
   fewer.decimate = options.decimate;
-  options.survey.memory.require(mesh::bytes_to_clean(mesh.vertices.size()),
-                                "decimating " + options.mesh.string());
+  context.memory().require(mesh::bytes_to_clean(mesh.vertices.size()),
+                           "decimating " + options.mesh.string());
   return naming(options.mesh, [&] { return mesh::clean(mesh, fewer); });
 }
 
 // How the allowed memory is shared out.
 struct Shares {
-  std::size_t images = 1;            // kept at the same time
-  std::uint64_t for_refinement = 1;  // [bytes]
+  std::size_t images = 1;  // kept at the same time
+  MemoryBudget for_refinement;
 };
 
-Shares share_out_memory(const Options& options, const survey::Survey& survey) {
+Shares share_out(const MemoryBudget& memory, const survey::Survey& survey) {
   std::uint64_t image = 0, decode = 0;
   for (const survey::View& view : survey.views) {
     const std::uint64_t pixels = view.pixels();
     image = std::max(image, survey::bytes_needed({pixels, view.masked(), false}));
     decode = std::max(decode, survey::bytes_needed_to_load(io::bytes_needed(view.header), pixels));
   }
-  const std::uint64_t left = options.survey.memory.left();
+  const std::uint64_t left = memory.left();
   const std::uint64_t room = left - std::min(left, decode);
   Shares shares;
   shares.images = std::clamp<std::size_t>(room / 8 / std::max<std::uint64_t>(image, 1), 2,
                                           std::max<std::size_t>(survey.views.size(), 2));
-  const std::uint64_t images = shares.images * image;
-  shares.for_refinement = room > images ? room - images : 1;
+  const std::uint64_t images = std::min(room, shares.images * image);
+  shares.for_refinement = MemoryBudget::of_bytes(room - images, memory.setting());
   return shares;
 }
 
@@ -103,11 +101,10 @@ Mesh refine_mesh(Mesh mesh, const survey::Survey& survey, const Options& options
       refine::fingerprint(mesh, options.refine, survey::fingerprint_of_views(survey, context));
   refine::State state = first_state(std::move(mesh), options, fingerprint, context);
   return_freed_memory();
-  const Shares shares = share_out_memory(options, survey);
+  const Shares shares = share_out(context.memory(), survey);
   survey::ImageStore images(survey, survey::Channels::grey, shares.images);
   images.check_all(1, context);
   refine::Options settings = options.refine;
-  settings.max_bytes = shares.for_refinement;
   settings.bytes_afterwards = mesh::bytes_to_clean(1);
   naming(options.mesh, [&] {
     refine::refine(
@@ -116,7 +113,8 @@ Mesh refine_mesh(Mesh mesh, const survey::Survey& survey, const Options& options
           const auto image = images.get(view);
           return refine::Picture{image->grey, image->mask};
         },
-        settings, [&](const refine::State& now) { of_run.write(now, fingerprint); }, context);
+        settings, [&](const refine::State& now) { of_run.write(now, fingerprint); },
+        Context(context, shares.for_refinement));
   });
   survey.photograph_check->report(context);
   const refine::Report& report = state.report;
@@ -159,8 +157,7 @@ int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
-  const Context context(console_events());
-  const ThreadLimit threads(options.parsed.common.max_threads);
+  const Context context = program_context(options.parsed);
   const OutputLock lock = lock_output(options.output);
   const survey::Survey survey = open(options, context);
   bool has_marks = false;

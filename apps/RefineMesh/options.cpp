@@ -32,7 +32,7 @@ void declare_io(OptionList& list, Raw& raw, Options& options) {
                         "format of the mesh: ply, obj or glb; if it is not given, the extension of "
                         "--output-file decides")
       .sets("type")
-      .add_max_memory(&survey.memory.megabytes)
+      .add_max_memory()
       .add("mask-path", &survey.mask_folder,
            "folder with a mask for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
            "a.jpg, in the same subfolders as the images")
@@ -111,14 +111,12 @@ void convert(const Raw& raw, Options& options) {
   options.cleaning.spikes = false;
   options.refine.references = static_cast<refine::References>(raw.alternate_pair);
   options.refine.smoothness *= raw.regularity_weight / Raw{}.regularity_weight;
-  options.refine.name_of = options.parsed.option_of;
 }
 
 }  // namespace
 
 Options parse_command_line(int argc, const char* const* argv) {
   Options options;
-  options.survey.memory.setting = "--max-memory";
   options.survey.resolution = {0, 640, 1 << 16};
   Raw raw;
   ProgramOptions program{"RefineMesh",

@@ -62,6 +62,7 @@ void judge(const Options& options, const Refined& refined, Results& results) {
 void judge_numbers(const Options& options, const pose::Uncertainty& known, const Results& results) {
   if (const auto line = scale_warning(results, known)) log_warning("{}", *line);
   if (const auto line = shape_warning(results, known)) log_warning("{}", *line);
+  if (const auto line = depth_warning(known)) log_warning("{}", *line);
   if (results.is_other_kind) return;  // numbers of the wrong kind are no cause
   for (const pose::HousingNumber& moved : diagnosis::moved_numbers(results.bundle, results.options))
     log_warning("{}", diagnosis::text_of(moved, results.ports[moved.camera]));

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/console.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "base/parallel.h"
 #include "effective_lens.h"
 #include "stages.h"
 
@@ -30,15 +28,17 @@ void finish(const Options& options, const Input& input, const Refined& refined,
   judge(options, refined, results);
   const pose::Uncertainty known = write(options, input, refined, results, context);
   for (const std::string& line : uncertainty_lines(results, known)) log_info("{}", line);
-  if (!results.options.poses_known) log_info("{}", shape_line(known));
+  if (!results.options.poses_known) {
+    log_info("{}", shape_line(known));
+    log_info("{}", depth_line(known));
+  }
   judge_numbers(options, known, results);
 }
 
 int run(int argc, char** argv) {
   Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
-  const Context context(console_events());
-  const ThreadLimit threads(options.parsed.common.max_threads);
+  const Context context = program_context(options.parsed);
   if (!options.effective_lens.empty()) {
     write_effective_lenses(options);
     return 0;

@@ -112,6 +112,7 @@ pose::Uncertainty not_computed(const Results& results) {
                             pose::HousingChange<double>::Constant(kInfinite));
   none.scale_sigma = results.options.poses_known ? 0 : kInfinite;
   none.shape_sigma = none.scale_sigma;
+  none.depth_sigma = none.scale_sigma;
   return none;
 }
 
@@ -221,6 +222,23 @@ std::optional<std::string> shape_warning(const Results& results, const pose::Unc
       shape_line(known), results.bundle.images[known.least_linked].name);
 }
 
+std::string depth_line(const pose::Uncertainty& known) {
+  if (!std::isfinite(known.depth_sigma))
+    return "The distances of the points from the cameras are not known";
+  return fmt::format(
+      "The distances of the points from the cameras are known to {:.2g} % (one standard deviation, "
+      "from the numbers of lens and port)",
+      100 * known.depth_sigma);
+}
+
+std::optional<std::string> depth_warning(const pose::Uncertainty& known) {
+  constexpr double kLargest = 0.005;
+  if (known.depth_sigma <= kLargest) return {};
+  return depth_line(known) +
+         ": calibrate the lens in air and the port with CalibrateHousing, or take photographs at "
+         "several distances and turned by 90 degrees";
+}
+
 std::string report_json(const Results& results, const pose::Uncertainty* known) {
   using Json = nlohmann::ordered_json;
   const pose::RefineReport& report = results.report;
@@ -235,6 +253,7 @@ std::string report_json(const Results& results, const pose::Uncertainty* known) 
             {"points_after", report.points_after}};
   json["scale_sigma"] = finite_or_null(scale_sigma(results, uncertainty.scale_sigma));
   json["shape_sigma"] = finite_or_null(uncertainty.shape_sigma);
+  json["depth_sigma"] = finite_or_null(uncertainty.depth_sigma);
   if (!known) json["standard_deviations"] = "missing";
   if (Json positions = positions_json(report); !positions.is_null())
     json["positions"] = std::move(positions);

@@ -62,6 +62,10 @@ std::string shape_line(const pose::Uncertainty& known);
 // length of the survey.
 std::optional<std::string> shape_warning(const Results& results, const pose::Uncertainty& known);
 
+// Returns the line for the log about Uncertainty::depth_sigma, and a warning if it is above 0.5 %.
+std::string depth_line(const pose::Uncertainty& known);
+std::optional<std::string> depth_warning(const pose::Uncertainty& known);
+
 // Returns the report as JSON. Numbers that are not known are null. If `known`, the standard
 // deviations of the refinement, is null, all standard deviations are null, and the report says that
 // they are missing.

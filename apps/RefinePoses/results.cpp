@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "base/out_of_memory.h"
 #include "io/cameras/geo_offset.h"
+#include "pose/depth_sigma.h"
 #include "stages.h"
 
 namespace axial::apps {
@@ -71,6 +72,8 @@ pose::Uncertainty write(const Options& options, const Input& input, const Refine
         model = {};
         pose::Uncertainty known = pose::uncertainty(after.bundle, results.options, context);
         write_sigmas(options, input, after, known);
+        if (!results.options.poses_known)
+          known.depth_sigma = pose::depth_sigma(after.bundle, results.options, context);
         return known;
       });
 }

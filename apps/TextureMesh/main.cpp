@@ -3,13 +3,11 @@
 
 #include <algorithm>
 
-#include "base/console.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/naming.h"
 #include "base/output_lock.h"
-#include "base/parallel.h"
 #include "base/tiling.h"
 #include "belong/surface_check.h"
 #include "cloud/tiles.h"
@@ -26,9 +24,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Mesh read_mesh(const Settings& settings, const LocalFrame& frame) {
-  settings.survey.memory.require(io::bytes_to_read_mesh(settings.mesh),
-                                 "reading " + settings.mesh.string());
+Mesh read_mesh(const Settings& settings, const LocalFrame& frame, const Context& context) {
+  context.memory().require(io::bytes_to_read_mesh(settings.mesh),
+                           "reading " + settings.mesh.string());
   Mesh mesh = io::read_mesh_of_scene(frame, settings.mesh);
   if (mesh.faces.empty()) fail("{}: the mesh has no faces", settings.mesh.string());
   log_info("{}: {} vertices, {} faces", settings.mesh.string(), mesh.vertices.size(),
@@ -38,10 +36,10 @@ Mesh read_mesh(const Settings& settings, const LocalFrame& frame) {
 }
 
 // The mesh with fewer faces, simplified as by ReconstructMesh.
-Mesh simplified(const Settings& settings, Mesh mesh) {
+Mesh simplified(const Settings& settings, Mesh mesh, const Context& context) {
   if (settings.decimate == 1) return mesh;
-  settings.survey.memory.require(mesh::bytes_to_clean(mesh.vertices.size()),
-                                 "decimating " + settings.mesh.string());
+  context.memory().require(mesh::bytes_to_clean(mesh.vertices.size()),
+                           "decimating " + settings.mesh.string());
   mesh::CleanOptions fewer;
   fewer.decimate = settings.decimate;
   fewer.close_holes = settings.close_holes;
@@ -95,10 +93,9 @@ void report(const Written& written, const texture::Report& facts) {
            written.textures, facts.unseen_faces, written.faces);
 }
 
-// The options of texture_mesh(), with what is left of the memory after the input was read.
+// The options of texture_mesh(), with the memory to read a photograph and to write the results.
 texture::Options with_memory(const Settings& settings, const survey::Photographs& photographs) {
   texture::Options options = settings.texture;
-  options.max_bytes = std::max<std::uint64_t>(settings.survey.memory.left(), 1);  // 0: no limit
   options.image_bytes = photographs.bytes_to_read_color();
   options.bytes_to_write = [&settings](const texture::ResultSize& size) {
     std::uint64_t bytes = 0;
@@ -136,7 +133,7 @@ void texture_and_write(const Settings& settings, const survey::Survey& survey, M
 // Warns if the mesh is inside out: no photograph shows faces that are turned away from it.
 void check_sides(const Settings& settings, const survey::Survey& survey, const Mesh& mesh,
                  const Context& context) {
-  settings.survey.memory.require(geometry::bytes_of_sights(mesh), "what the cameras see");
+  context.memory().require(geometry::bytes_of_sights(mesh), "what the cameras see");
   naming(settings.mesh, [&] {
     geometry::warn_if_inside_out(
         geometry::find_seen_part(mesh, survey::posed_cameras(survey), {.strays = false}),
@@ -150,15 +147,14 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
   const Settings& settings = options.settings;
-  const Context context(console_events());
-  const ThreadLimit limit(options.parsed.common.max_threads);
+  const Context context = program_context(options.parsed);
   const OutputLock lock = lock_output(settings.output);
-  survey::Survey survey = survey::open_scene(settings.survey);
-  Mesh mesh = read_mesh(settings, survey.frame);
+  survey::Survey survey = survey::open_scene(settings.survey, context);
+  Mesh mesh = read_mesh(settings, survey.frame, context);
   naming(settings.mesh, [&] { check_mesh(mesh); });
   belong::check_surface(survey.scene, belong::shape_of(mesh), {settings.mesh, survey.file()},
                         context);
-  mesh = simplified(settings, std::move(mesh));
+  mesh = simplified(settings, std::move(mesh), context);
   survey::find_photographs(survey, context);
   survey.add_inputs(io::files_of_mesh(settings.mesh));
   for (std::size_t tile = 0; tile < settings.texture.tiles; ++tile)

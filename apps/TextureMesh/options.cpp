@@ -55,7 +55,7 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
       .add_with_default("close-holes", &settings.close_holes,
                         "with --decimate below 1: close holes of at most this many edges (0: none)")
       .range(0, 1000)
-      .add_max_memory(&settings.survey.memory.megabytes)
+      .add_max_memory(64 * kMegabyte)
       .add_with_default("tiles", &settings.texture.tiles,
                         "make this number of meshes, <output>.tileI-N, one after the other, in "
                         "less memory; their colours agree where they meet")
@@ -148,7 +148,6 @@ void convert(const Raw& raw, Options& options) {
 
 Options parse_command_line(int argc, const char* const* argv) {
   Options options;
-  options.settings.survey.memory = {0, "--max-memory", 64 * kMegabyte};
   options.settings.survey.resolution = {0, 640, 1 << 20};
   Raw raw;
   ProgramOptions program{"TextureMesh",

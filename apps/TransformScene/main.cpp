@@ -11,13 +11,11 @@
 #include <vector>
 
 #include "base/atomic_file.h"
-#include "base/console.h"
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "base/log.h"
 #include "base/output_lock.h"
 #include "base/output_name.h"
-#include "base/parallel.h"
 #include "base/same_file.h"
 #include "belong/surface_check.h"
 #include "converted_mesh.h"
@@ -274,14 +272,13 @@ void warn_of_older_files(const Options& options, const Files& files) {
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
-  const Context context(console_events());
-  const ThreadLimit threads(options.parsed.common.max_threads);
+  const Context context = program_context(options.parsed);
   const Files files = files_of(options);
   std::optional<OutputLock> lock;
   const bool writes = !outputs_of(options, files).empty();
   if (writes) lock.emplace(options.output, LockUse::alone, ParentFolder::made);
   check_outputs(options, files);
-  survey::Survey survey = survey::open_scene(options.survey);
+  survey::Survey survey = survey::open_scene(options.survey, context);
   keep_images(options, files, survey);
   for (const MovedPly& ply : files.plys)
     warn_of_foreign_points(options, survey, ply.input, context);

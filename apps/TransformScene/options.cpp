@@ -82,7 +82,6 @@ void declare_other_work(OptionList& list, Options& options) {
 }
 
 void set_paths(const Texts& texts, Options& options) {
-  options.survey.has_memory_limit = false;
   options.survey.files = io::scene_files(texts.cameras, texts.input, options.parsed);
   options.output = with_extension(
       output_or(options.output, without_known_extension(options.survey.files.scene) += "_transform",

@@ -227,7 +227,7 @@ Json files_of(const Options& options) {
 
 Contents read_contents(const Options& options, const Context& context) {
   Contents contents;
-  contents.survey = survey::open_scene(options.survey);
+  contents.survey = survey::open_scene(options.survey, context);
   survey::find_photographs(contents.survey, context);
   if (!options.cloud.empty()) read_cloud(options, contents, context);
   read_mesh(options, contents, context);

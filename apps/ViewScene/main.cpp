@@ -5,11 +5,9 @@
 #include <filesystem>
 
 #include "base/atomic_file.h"
-#include "base/console.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/output_lock.h"
-#include "base/parallel.h"
 #include "contents.h"
 #include "folder.h"
 #include "options.h"
@@ -23,8 +21,7 @@ int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
-  const Context context(console_events());
-  const ThreadLimit limit(options.parsed.common.max_threads);
+  const Context context = program_context(options.parsed);
   const fs::path page = page_folder();
   const OutputLock lock = lock_output(options.report);
   require_own_folder(options.report);

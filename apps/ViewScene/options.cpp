@@ -84,7 +84,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   declare(program.visible, raw, options);
   options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
-  options.survey.has_memory_limit = options.survey.has_masks = false;
+  options.survey.has_masks = false;
   options.survey.compares_photographs = true;
   options.survey.files = io::scene_files(raw.scene, raw.input, options.parsed);
   if (options.cloud.empty()) options.cloud = cloud_beside(options);

@@ -6,11 +6,17 @@
 #include <utility>
 
 #include "base/message.h"
+#include "base/parallel.h"
 
 namespace axial {
 
-Context::Context(EventSink sink, std::stop_token stop)
-    : sink_(std::move(sink)), stop_(std::move(stop)) {}
+Context::Context(EventSink sink, std::stop_token stop, const Limits& limits)
+    : sink_(std::move(sink)), stop_(std::move(stop)), memory_(limits.memory) {
+  if (limits.threads) threads_ = std::make_shared<const ThreadLimit>(*limits.threads);
+}
+
+Context::Context(const Context& whole, MemoryBudget memory)
+    : sink_(whole.with_prefix("")), stop_(whole.stop_), memory_(std::move(memory)) {}
 
 EventSink Context::with_prefix(std::string prefix) const {
   return [this, prefix = std::move(prefix)](Event event) {

@@ -72,38 +72,6 @@ std::uint64_t available_memory(const fs::path& root) {
   return std::min(*available, container_limit(root));
 }
 
-std::uint64_t memory_limit(std::uint64_t megabytes, const std::string& setting) {
-  if (megabytes > 0) return megabytes * kMegabyte;
-  try {
-    return available_memory() / 10 * 7;
-  } catch (const Error& error) {
-    fail("{}; give {}", error.what(), setting);
-  }
-}
-
-namespace {
-
-// The memory that this process uses is not available any more, but it belongs to the limit.
-std::uint64_t limit_of(const MemoryAllowance& allowance) {
-  const std::uint64_t limit = memory_limit(allowance.megabytes, allowance.setting);
-  return allowance.megabytes > 0 ? limit : limit + resident_memory() / 10 * 7;
-}
-
-}  // namespace
-
-void MemoryAllowance::require(std::uint64_t bytes, const std::string& work) const {
-  const std::uint64_t needed = std::max(resident_memory(), program_bytes) + bytes;
-  const std::uint64_t limit = limit_of(*this);
-  if (needed > limit)
-    fail("{}: {} MB are too little, {} needs {} MB", setting, limit / kMegabyte, work,
-         needed / kMegabyte + 1);
-}
-
-std::uint64_t MemoryAllowance::left() const {
-  const std::uint64_t limit = limit_of(*this);
-  return limit - std::min(limit, std::max(resident_memory(), program_bytes));
-}
-
 std::uint64_t resident_memory() {
   std::ifstream in("/proc/self/statm");
   std::uint64_t total = 0, resident = 0;

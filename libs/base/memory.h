@@ -4,9 +4,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <string>
-
-#include "axial/base.h"
 
 namespace axial {
 
@@ -17,11 +14,6 @@ namespace axial {
 // folder that contains the folders proc and sys. Tests pass another folder than "/". Throws an
 // Error if the system does not report MemAvailable.
 std::uint64_t available_memory(const std::filesystem::path& root = "/");
-
-// The bytes that a program may use: `megabytes` megabytes, or 70 % of available_memory() if
-// `megabytes` is 0. `setting`: the name of `megabytes` in messages. Throws an Error if `megabytes`
-// is 0 and the system does not report how much memory is available.
-std::uint64_t memory_limit(std::uint64_t megabytes, const std::string& setting);
 
 // The bytes of this process that are in memory now (resident set), including its code and its
 // libraries. The number differs by some pages from run to run.

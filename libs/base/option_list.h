@@ -18,6 +18,8 @@
 #include <variant>
 #include <vector>
 
+#include "axial/base.h"
+
 namespace axial {
 
 // The variable that gets the value of an option. Its type is the type of the value. A path becomes
@@ -139,11 +141,20 @@ class OptionList {
     return *this;
   }
 
-  // Adds --max-memory: the limit of memory [MB], or 0.
+  // Adds --max-memory: the limit of memory [MB], or 0. It sets ParsedOptions::memory.
+  // `program_bytes`: as for MemoryBudget::of_program().
   OptionList& add_max_memory(
-      std::uint64_t* megabytes,
+      std::uint64_t program_bytes = kProgramBytes,
       const char* help = "largest memory to use [MB] (0: 70 % of the free memory)") {
-    return add_with_default("max-memory", megabytes, help).range(0, 0x1p40);
+    max_memory_ = std::make_shared<std::uint64_t>(0);
+    program_bytes_ = program_bytes;
+    return add_with_default("max-memory", max_memory_.get(), help).range(0, 0x1p40);
+  }
+
+  // The budget that the value of --max-memory states. Without this option, it has no limit.
+  MemoryBudget memory() const {
+    if (!max_memory_) return {};
+    return MemoryBudget::of_program(*max_memory_, "--max-memory", program_bytes_);
   }
 
   // Adds an option of OpenMVS's programs whose function AxialMVS does not have. It accepts only its
@@ -223,6 +234,8 @@ class OptionList {
 
   std::string title_;
   std::vector<Option> options_;
+  std::shared_ptr<std::uint64_t> max_memory_;
+  std::uint64_t program_bytes_ = 0;
 };
 
 }  // namespace axial

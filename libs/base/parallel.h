@@ -11,12 +11,12 @@
 namespace axial {
 
 // Calls body(i) for every i in [0, count), in any order, on any thread. Returns when all calls have
-// returned. If calls throw, one of the exceptions is rethrown to the caller, and items that have
-// not begun may be left out. Which exception is rethrown can differ from run to run; FirstError
-// (base/first_error.h) avoids this. `grain`: the largest number of consecutive items that a thread
-// takes at once, at least 1. If loops are nested, a thread that waits for the end of the inner loop
-// does not begin another item of the outer loop. So no thread holds the memory of two items of the
-// outer loop.
+// returned. If calls throw, one of the exceptions is rethrown to the caller after the calls that
+// have begun have returned, and items that have not begun may be left out. Which exception is
+// rethrown can differ from run to run; FirstError (base/first_error.h) avoids this. `grain`: the
+// largest number of consecutive items that a thread takes at once, at least 1. If loops are nested,
+// a thread that waits for the end of the inner loop does not begin another item of the outer loop.
+// So no thread holds the memory of two items of the outer loop.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body,
                   std::size_t grain = 1);
 
@@ -24,10 +24,10 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
 inline constexpr std::size_t kPointGrain = 1024;
 
 // Calls body(i) for every i in [0, count), on any thread, and returns when all calls have returned.
-// If a call throws, the exception is rethrown to the caller, and items that have not begun may be
-// left out. This loop is for items that need much memory. The items begin in the order of i. No
-// more than `in_flight` items run at the same time. An `in_flight` of 0 counts as 1. The items may
-// use parallel loops themselves.
+// If a call throws, the exception is rethrown to the caller after the calls that have begun have
+// returned, and items that have not begun may be left out. This loop is for items that need much
+// memory. The items begin in the order of i. No more than `in_flight` items run at the same time.
+// An `in_flight` of 0 counts as 1. The items may use parallel loops themselves.
 void for_each_in_flight(std::size_t count, std::size_t in_flight,
                         const std::function<void(std::size_t)>& body);
 

@@ -16,6 +16,7 @@
 #include <typeinfo>
 
 #include "base/byte_order_mark.h"
+#include "base/console.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/log_file.h"
@@ -333,6 +334,10 @@ SettingNames options_of_settings(const ProgramOptions& program) {
 
 }  // namespace
 
+Context program_context(const ParsedOptions& parsed) {
+  return Context(console_events(), {}, {parsed.memory, parsed.common.max_threads});
+}
+
 bool given(const ParsedOptions& parsed, const std::string& name) {
   return parsed.given.contains(name);
 }
@@ -380,6 +385,7 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
   }
   apply(parsed.common);
   parsed.option_of = options_of_settings(program);
+  parsed.memory = program.visible.memory();
   take_values(std::array{&program.visible, &program.hidden}, parsed);
   parsed.run = true;
   return parsed;

@@ -8,14 +8,14 @@
 #include <set>
 #include <string>
 
-#include "axial/base.h"
+#include "base/context.h"
 #include "base/option_list.h"
 
 namespace axial {
 
 // Values of the options that are common to all programs. parse_options() fills them, and applies
 // `log_file`, `process_priority` and `verbosity`. The program itself must apply `max_threads`
-// (ThreadLimit in base/parallel.h).
+// (program_context(), or ThreadLimit in base/parallel.h).
 struct CommonOptions {
   std::filesystem::path working_folder;  // absolute; relative paths start here
   std::string config_file;    // as the user gave it; a relative path starts at `working_folder`
@@ -51,7 +51,8 @@ struct ParsedOptions {
   // setting itself if no option does. A setting is a field, or a field with a value (OptionSetting
   // in base/option_list.h).
   SettingNames option_of = own_name;
-  bool run = false;  // false: the program must do nothing more and exit with exit_code
+  MemoryBudget memory = {};  // of --max-memory; without a limit if the program has no such option
+  bool run = false;          // false: the program must do nothing more and exit with exit_code
   int exit_code = 0;
 };
 
@@ -72,6 +73,10 @@ struct ParsedOptions {
 // Throws an Error for an unknown option, a malformed value, a missing value, a value that breaks a
 // rule of the table (base/option_list.h), or an unusable working folder, cfg file or log file.
 ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOptions& program);
+
+// The Context of a program: its events go to the log and to the console (base/console.h), and it
+// has the limits --max-memory and --max-threads.
+Context program_context(const ParsedOptions& parsed);
 
 // True if the user gave the option with the long name `name` on the command line or in the cfg
 // file.

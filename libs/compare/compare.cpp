@@ -79,12 +79,13 @@ double checked_distance(const Mesh& mesh, const std::filesystem::path& name) {
 }
 
 void require_memory(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
-                    const map::MapGrid& grid, const CompareOptions& options) {
+                    const map::MapGrid& grid, const CompareOptions& options,
+                    const Context& context) {
   std::uint64_t mesh =
       std::max(bytes_of_height_map(before, frame, grid), bytes_of_height_map(after, frame, grid));
   if (!options.photos.before.empty()) mesh = std::max(mesh, geometry::bytes_of_surface(before));
   if (!options.photos.after.empty()) mesh = std::max(mesh, geometry::bytes_of_surface(after));
-  options.memory.require(
+  context.memory().require(
       map::kCacheBytes + mesh + kBytesPerPixel * static_cast<std::uint64_t>(grid.pixels()),
       fmt::format("a map of {} x {} pixels", grid.columns, grid.rows));
 }
@@ -261,17 +262,17 @@ Comparison placed(const Mesh& before, const Mesh& after, const map::MapFrame& fr
     });
   };
   result.grid = common(frame);
-  require_memory(before, after, frame, result.grid, options);
+  require_memory(before, after, frame, result.grid, options, context);
   after_frame = frame;
   if (options.align) {
-    options.memory.require(geometry::bytes_of_surface(before), "the registration");
+    context.memory().require(geometry::bytes_of_surface(before), "the registration");
     result.registration = naming(options.name_after, [&] {
       return register_surveys(before, after, frame, result.grid, options.registration,
                               context.stage("Registration"));
     });
     after_frame = moved(frame, result.registration.motion);
     result.grid = common(after_frame);
-    require_memory(before, after, after_frame, result.grid, options);
+    require_memory(before, after, after_frame, result.grid, options, context);
   }
   return result;
 }

@@ -144,9 +144,9 @@ struct JobRun {
 
   Report operator()(const ExportJob& job) const {
     const fs::path& points = options.views.point_cloud;
-    const WrittenCloud cloud =
-        export_cloud(load_scene(options.survey, points, options.output.scene, true), job,
-                     options.output, files.inputs, context);
+    const WrittenCloud cloud = export_cloud(
+        load_scene(options.survey, points, options.output.scene, true, context.memory()), job,
+        options.output, files.inputs, context);
     return {Result::point_export, cloud.file, cloud.points};
   }
 
@@ -239,8 +239,9 @@ struct JobRun {
 }  // namespace
 
 Report densify(const Options& options, const SceneObserver& observer, const Context& context) {
+  if (!context.memory().is_limited())
+    return densify(options, observer, Context(context, MemoryBudget::of_program(0)));
   check(options);
-  const ThreadLimit threads(options.max_threads);
   // If its folder cannot be made, require_writable reports it.
   const OutputLock lock = lock_output(options.output.scene, use_of_output(options));
   const JobRun run{options, observer, context, files_of(options)};

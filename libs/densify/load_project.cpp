@@ -51,7 +51,7 @@ void select_views(Project& project, const ViewOptions& options, const SceneObser
   if (!scene.region) scene.region = estimate_region(scene, options.region);
   if (scene.region) scene.region = with_border(*scene.region, options.roi_border);
   tell(observer, project, own_region);
-  require_memory_to_score(scene, project.options, options.selection);
+  require_memory_to_score(scene, project.options, options.selection, context.memory());
   project.preparations =
       score_neighbours(scene, options.selection, context.stage("Scored neighbours"));
   if (!options.neighbour_lists.empty()) use_neighbour_lists(project, options, context);
@@ -78,10 +78,10 @@ void select_views(Project& project, const ViewOptions& options, const SceneObser
 
 }  // namespace
 
-Project load_scene(survey::Options survey, const std::filesystem::path& point_cloud,
-                   const std::filesystem::path& output, bool for_export) {
-  require_memory_to_read(survey, point_cloud, for_export);
-  survey.has_memory_limit = false;  // require_memory_to_read() has checked more than the scene
+Project load_scene(const survey::Options& survey, const std::filesystem::path& point_cloud,
+                   const std::filesystem::path& output, bool for_export,
+                   const MemoryBudget& memory) {
+  require_memory_to_read(survey, point_cloud, for_export, memory);  // more than the scene
   Project project;
   static_cast<survey::Survey&>(project) = survey::open_scene(survey);
   project.lenses = io::lenses_of(project.scene, output);
@@ -92,7 +92,7 @@ Project load_scene(survey::Options survey, const std::filesystem::path& point_cl
 Project load_project(const survey::Options& survey, const ViewOptions& options,
                      const std::filesystem::path& output, const SceneObserver& observer,
                      const Context& context) {
-  Project project = load_scene(survey, options.point_cloud, output, false);
+  Project project = load_scene(survey, options.point_cloud, output, false, context.memory());
   find_views(project, context);
   check_ids(project);
   select_views(project, options, observer, context);

@@ -10,8 +10,9 @@ namespace axial::densify {
 // empty. Fills the members of the scene, and `lenses`, which will be written beside the scene
 // `output`. `for_export`: the points are only exported. Reads no image files. Throws an Error for
 // any fault of the files that are read, and for too little memory to read them.
-Project load_scene(survey::Options survey, const std::filesystem::path& point_cloud,
-                   const std::filesystem::path& output, bool for_export);
+Project load_scene(const survey::Options& survey, const std::filesystem::path& point_cloud,
+                   const std::filesystem::path& output, bool for_export,
+                   const MemoryBudget& memory);
 
 // Loads the scene, finds its images and masks, and selects views. Fills all members besides `part`
 // and `fingerprint`. Of image files, the headers are kept. `observer`, unless it is empty, is

@@ -21,10 +21,6 @@
 namespace axial::densify {
 namespace {
 
-std::uint64_t limit_of(const survey::Options& survey) {
-  return memory_limit(survey.memory.megabytes, survey.files.name_of("max_memory"));
-}
-
 // The memory that a project holds for each image besides the scene: view, chosen neighbours,
 // fingerprint.
 std::uint64_t kept_of_images(std::uint64_t images) {
@@ -79,14 +75,13 @@ std::uint64_t bytes_to_score(const io::MvsCounts& counts, const ScoringSize& siz
 }
 
 // `bytes`: the peak while the scene is read and its views are scored.
-void require_memory_for_scene(std::uint64_t bytes, const survey::Options& survey) {
-  const std::uint64_t limit = limit_of(survey), least = bytes + survey.memory.program_bytes;
-  if (bytes > survey.memory.program_bytes && limit < least)
+void require_memory_for_scene(std::uint64_t bytes, const MemoryBudget& memory) {
+  const std::uint64_t limit = memory.limit(), least = bytes + memory.program_bytes();
+  if (bytes > memory.program_bytes() && limit < least)
     fail(
         "{} {}: {} MB are too little, this scene needs at least {} MB for reading and for "
         "scoring its views",
-        survey.files.name_of("max_memory"), survey.memory.megabytes, limit / kMegabyte,
-        least / kMegabyte + 1);
+        memory.setting(), memory.megabytes(), limit / kMegabyte, least / kMegabyte + 1);
 }
 
 constexpr std::size_t kMostCached = 48;
@@ -120,18 +115,18 @@ std::size_t enlarged(std::size_t entries, std::uint64_t each, std::uint64_t spar
 }  // namespace
 
 void require_memory_to_read(const survey::Options& survey, const std::filesystem::path& point_cloud,
-                            bool for_export) {
+                            bool for_export, const MemoryBudget& memory) {
   if (const auto bytes = bytes_to_read(survey.files, point_cloud, for_export))
-    require_memory_for_scene(*bytes, survey);
+    require_memory_for_scene(*bytes, memory);
 }
 
 void require_memory_to_score(const Scene& scene, const survey::Options& survey,
-                             const ViewSelectionOptions& selection) {
+                             const ViewSelectionOptions& selection, const MemoryBudget& memory) {
   ScoringSize size = scoring_size(scene, selection);
   const io::MvsCounts counts = io::count_scene(scene);
-  if (bytes_to_score(counts, size, survey.files) + survey.memory.program_bytes > limit_of(survey))
+  if (bytes_to_score(counts, size, survey.files) + memory.program_bytes() > memory.limit())
     size.neighbours = count_neighbours(scene, selection);
-  require_memory_for_scene(bytes_to_score(counts, size, survey.files), survey);
+  require_memory_for_scene(bytes_to_score(counts, size, survey.files), memory);
 }
 
 std::uint64_t least_memory_to_prepare(const Scene& scene, const survey::Options& survey,
@@ -142,8 +137,7 @@ std::uint64_t least_memory_to_prepare(const Scene& scene, const survey::Options&
   io::MvsCounts counts = io::count_scene(scene);
   counts.set_view_scores(0);  // before scoring
   const std::uint64_t reading = bytes_to_read(survey.files, options.point_cloud, false).value_or(0);
-  return survey.memory.program_bytes +
-         std::max(bytes_to_score(counts, size, survey.files), reading);
+  return std::max(bytes_to_score(counts, size, survey.files), reading);
 }
 
 ListLengths longest_lists(const Project& project, const MatchOptions& matching,
@@ -226,15 +220,15 @@ MemoryPlan share_out(const StageBytes& bytes, const ListLengths& lists, std::uin
 }
 
 MemoryPlan plan_memory(const Project& project, const Options& options, const Context& context) {
-  const survey::Options& survey = options.survey;
+  const MemoryBudget& memory = context.memory();
   const ListLengths lists = longest_lists(project, options.matching, options.fusion);
   const StageBytes bytes = bytes_of_stages(project, options, lists);
-  const std::uint64_t limit = limit_of(survey);
-  const std::uint64_t fixed = bytes.scene + survey.memory.program_bytes;
+  const std::uint64_t limit = memory.limit();
+  const std::uint64_t fixed = bytes.scene + memory.program_bytes();
   const std::uint64_t least = fixed + least_bytes(bytes, lists, 1);
   if (limit < least)
-    fail("{} {}: {} MB are too little, this scene needs {} MB", survey.files.name_of("max_memory"),
-         survey.memory.megabytes, limit / kMegabyte, least / kMegabyte + 1);
+    fail("{} {}: {} MB are too little, this scene needs {} MB", memory.setting(),
+         memory.megabytes(), limit / kMegabyte, least / kMegabyte + 1);
   const MemoryPlan plan = share_out(bytes, lists, limit - fixed, thread_count());
   context.details(
       "Memory {} MB, at least {}: {} images at a time, {} kept, {} depths, {} maps, {} in fusion",

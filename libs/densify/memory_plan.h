@@ -4,9 +4,8 @@
 // affects the result. The formula of each stage is defined in the source file of the stage, beside
 // the code that allocates the memory.
 //
-// Every check throws an Error that names max_memory, its value and the least necessary value, if
-// the allowed memory (memory_limit() in base/memory.h) is too little, or if max_memory is 0 and the
-// system does not tell how much memory is available.
+// Every check throws an Error that names the setting of the budget, its value and the least
+// necessary value, if the limit is too little. The budget must have a limit.
 #pragma once
 
 #include <cstddef>
@@ -22,20 +21,21 @@ namespace axial::densify {
 // `point_cloud` (empty: none), and for scoring its views. The memory is estimated from the counts
 // of images and points in the files. `for_export`: the points are only exported. There is no error
 // in two cases:
-// - The estimate is at most MemoryAllowance::program_bytes. plan_memory() checks the whole need
+// - The estimate is at most MemoryBudget::program_bytes(). plan_memory() checks the whole need
 //   later.
 // - The counts cannot be read. The function that reads the scene reports the fault.
 void require_memory_to_read(const survey::Options& survey, const std::filesystem::path& point_cloud,
-                            bool for_export);
+                            bool for_export, const MemoryBudget& memory);
 
 // Makes the same check for a scene that was read. Call this function before the views are scored.
 // The estimate is closer than that of require_memory_to_read(), because it includes the lists of
 // neighbours that scoring makes. Throws an Error, too, if a point has a view of an image that does
 // not exist.
 void require_memory_to_score(const Scene& scene, const survey::Options& survey,
-                             const ViewSelectionOptions& selection);
+                             const ViewSelectionOptions& selection, const MemoryBudget& memory);
 
-// The least memory [bytes] with which both checks pass. `scene`: with the neighbours of its images.
+// The least memory [bytes] with which both checks pass, without MemoryBudget::program_bytes().
+// `scene`: with the neighbours of its images.
 std::uint64_t least_memory_to_prepare(const Scene& scene, const survey::Options& survey,
                                       const ViewOptions& options);
 
@@ -103,15 +103,15 @@ struct MemoryPlan {
 // help, because images are processed in order.
 // Throws an Error if the allowed memory is too little to process one image at a time, or to write
 // the scene while no images are cached.
-MemoryPlan plan_memory(const Project& project, const Options& options, const Context& context = {});
+MemoryPlan plan_memory(const Project& project, const Options& options, const Context& context);
 
 // The least memory [bytes] of a run that processes `in_flight` images at a time, without the loaded
-// scene (StageBytes::scene) and without MemoryAllowance::program_bytes. Its caches hold only the
+// scene (StageBytes::scene) and without MemoryBudget::program_bytes(). Its caches hold only the
 // images and maps in work.
 std::uint64_t least_bytes(const StageBytes& bytes, const ListLengths& lists, std::size_t in_flight);
 
 // Returns the plan for at most `threads` images at a time. `room`: the allowed memory [bytes]
-// without the loaded scene (StageBytes::scene) and without MemoryAllowance::program_bytes.
+// without the loaded scene (StageBytes::scene) and without MemoryBudget::program_bytes().
 // Precondition: `room` is at least least_bytes() for one image in flight.
 MemoryPlan share_out(const StageBytes& bytes, const ListLengths& lists, std::uint64_t room,
                      std::size_t threads);

@@ -57,19 +57,20 @@ nlohmann::json work(double cpu_seconds, std::uint64_t bytes) {
 }
 
 // The least memory with which as many images as threads are processed at the same time.
-std::uint64_t memory_of(const Project& project, const Options& options) {
+std::uint64_t memory_of(const Project& project, const Options& options,
+                        std::uint64_t program_bytes) {
   const ListLengths lists = longest_lists(project, options.matching, options.fusion);
   const StageBytes bytes = bytes_of_stages(project, options, lists);
-  return std::max(
-      bytes.scene + options.survey.memory.program_bytes + least_bytes(bytes, lists, thread_count()),
-      least_memory_to_prepare(project.scene, options.survey, options.views));
+  return program_bytes +
+         std::max(bytes.scene + least_bytes(bytes, lists, thread_count()),
+                  least_memory_to_prepare(project.scene, options.survey, options.views));
 }
 
 }  // namespace
 
 void write_work_plan(const Project& project, const Options& options, const PlanJob& job,
                      const Context& context) {
-  const std::uint64_t memory = memory_of(project, options);
+  const std::uint64_t memory = memory_of(project, options, context.memory().program_bytes());
   const std::vector<double> seconds = seconds_of_stages(project, options.matching);
   const std::vector<std::string> names = stage_names(options.matching);
   const std::size_t images = project.references.size();

@@ -85,15 +85,15 @@ class OpenMaps {
 };
 
 // How many blocks fit into memory at the same time, with the lists of the faces.
-std::size_t blocks_at_once(const MapContent& content, const WriteOptions& options, int samples) {
+std::size_t blocks_at_once(const MapContent& content, const WriteOptions& options, int samples,
+                           const MemoryBudget& budget) {
   const std::uint64_t fixed = kCacheBytes + FaceBins::bytes(content.mesh.mesh, content.frame,
                                                             content.grid, options.block_size);
   const std::uint64_t each = bytes_of_block(options.block_size, samples);
-  options.memory.require(fixed + each, fmt::format("a map of {} x {} pixels", content.grid.columns,
-                                                   content.grid.rows));
-  const std::uint64_t left = options.memory.left();
-  const std::uint64_t fit = left > fixed ? (left - fixed) / each : 1;
-  return static_cast<std::size_t>(std::clamp<std::uint64_t>(fit, 1, thread_count()));
+  const std::string work =
+      fmt::format("a map of {} x {} pixels", content.grid.columns, content.grid.rows);
+  const auto lists = budget.reserve(fixed);
+  return budget.items(each, thread_count(), work);
 }
 
 void write_picture(const fs::path& path, const fs::path& colors, const WriteOptions& options) {
@@ -109,9 +109,9 @@ void write_picture(const fs::path& path, const fs::path& colors, const WriteOpti
 MapReport make_maps(const MapFiles& files, const MapContent& content, const WriteOptions& options,
                     const Context& context) {
   if (options.samples == 0)
-    options.memory.require(bytes_of_samples(content), "the width of a pixel in texels");
+    context.memory().require(bytes_of_samples(content), "the width of a pixel in texels");
   const int samples = options.samples > 0 ? options.samples : samples_per_pixel(content);
-  const std::size_t at_once = blocks_at_once(content, options, samples);
+  const std::size_t at_once = blocks_at_once(content, options, samples, context.memory());
   OpenMaps maps(files, content, options);
   {
     const FaceBins bins(content.mesh.mesh, content.frame, content.grid, options.block_size);

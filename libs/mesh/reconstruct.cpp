@@ -25,20 +25,21 @@ MergedPoints merged(PointCloud cloud, const Scene& scene, const ViewRays& rays,
   const std::size_t all = cloud.size();
   if (options.only_region && scene.region) cloud::crop(cloud, *scene.region);
   MergeOptions settings = options.merge;
-  if (options.max_bytes > 0) settings.most_points = most_points(options.max_bytes);
+  if (context.memory().is_limited()) settings.most_points = most_points(context.memory().limit());
   MergedPoints points = merge_points(cloud, rays, settings);
   context.info("{} points merged to {}", all, points.count);
   if (points.count < 4) fail("{} points remain of {}: at least 4 are needed", points.count, all);
   return points;
 }
 
-void check_memory(std::size_t points, const ReconstructOptions& options) {
+void check_memory(std::size_t points, const ReconstructOptions& options,
+                  const MemoryBudget& memory) {
   const std::uint64_t needed = bytes_needed(points);
-  if (options.max_bytes > 0 && needed > options.max_bytes)
+  if (memory.is_limited() && needed > memory.limit())
     fail(
         "{} merged points need about {} MB, but {} is {}; a larger {} merges more points, and a "
         "larger {} needs less memory",
-        points, needed / kMegabyte, options.name_of("max_memory"), options.max_bytes / kMegabyte,
+        points, needed / kMegabyte, memory.setting(), memory.limit() / kMegabyte,
         options.name_of("merge.min_distance"), options.name_of("tiles"));
 }
 
@@ -100,7 +101,7 @@ void check_points(const PointCloud& cloud, const Scene& scene, std::size_t first
 Mesh reconstruct_merged(MergedPoints points, const Scene& scene, const ViewRays& rays,
                         const ReconstructOptions& options, const Context& context) {
   if (points.size() < 4) return {};
-  check_memory(points.size(), options);
+  check_memory(points.size(), options, context.memory());
   Surface surface = cut_surface(points, rays, options, context);
   points = {};
   return_freed_memory();
@@ -123,7 +124,7 @@ Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions&
   const ViewRays rays(scene);
   MergedPoints points = merged(std::move(cloud), scene, rays, options, context);
   return_freed_memory();
-  check_memory(points.count, options);
+  check_memory(points.count, options, context.memory());
   ReconstructOptions settings = options;
   settings.clean.may_be_empty = false;
   Mesh mesh = reconstruct_merged(std::move(points), scene, rays, settings, context);

@@ -22,7 +22,8 @@ std::uint64_t bytes_needed(std::size_t merged_points);
 void check_points(const PointCloud& cloud, const Scene& scene, std::size_t first = 0);
 // Makes the mesh of points that are merged already. `rays`: of the same scene. The result has no
 // faces if there are fewer than four points, if no surface is found, or if cleaning leaves no face.
-// Throws an Error if bytes_needed() exceeds max_bytes, or if all points lie in a plane.
+// Throws an Error if bytes_needed() exceeds the limit of Context::memory(), or if all points lie in
+// a plane.
 Mesh reconstruct_merged(MergedPoints points, const Scene& scene, const ViewRays& rays,
                         const ReconstructOptions& options, const Context& context = {});
 

@@ -107,9 +107,10 @@ class TiledRun {
   }
 
   void require_memory(std::uint64_t bytes, const std::string& work) const {
-    if (options_.max_bytes > 0 && bytes > options_.max_bytes)
-      fail("{} needs about {} MB, but {} is {}", work, bytes / kMegabyte,
-           options_.name_of("max_memory"), options_.max_bytes / kMegabyte);
+    const MemoryBudget& memory = context_.memory();
+    if (memory.is_limited() && bytes > memory.limit())
+      fail("{} needs about {} MB, but {} is {}", work, bytes / kMegabyte, memory.setting(),
+           memory.limit() / kMegabyte);
   }
 
   // Passes the points to use to `sink`, and the properties of the cloud.

@@ -162,6 +162,8 @@ struct Uncertainty {
   // Infinite if nothing determines it. 0 if poses are known, or with fewer than three images.
   double shape_sigma = 0;
   std::size_t least_linked = 0;  // the image with the largest part in `shape_sigma`
+  // depth_sigma() (depth_sigma.h). uncertainty() does not compute it, and leaves 0.
+  double depth_sigma = 0;
 };
 
 // Returns the first-order standard deviations of the result of adjust(), from the normal equations

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "refine/memory.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
-#include "base/error.h"
 #include "refine/data_term.h"
 #include "refine/vertex_images.h"
 
@@ -33,29 +34,13 @@ std::uint64_t bytes_to_split(const Sizes& sizes, std::uint64_t marked) {
   return sizes.vertices * 60 + 3 * marked * kOfEdge + (sizes.faces + 3 * marked) * 2 * 12;
 }
 
-namespace {
-
-void require(std::uint64_t bytes, const Options& options, const std::string& work) {
-  if (options.max_bytes > 0 && bytes > options.max_bytes)
-    fail("{}: {} needs {} MB more", options.name_of("max_memory"), work,
-         (bytes - options.max_bytes) / 1'000'000 + 1);
-}
-
-}  // namespace
-
-void require_memory_to_split(const Sizes& sizes, std::uint64_t marked, const Options& options) {
-  require(bytes_to_split(sizes, marked), options,
-          fmt::format("splitting {} of {} faces", marked, sizes.faces));
-}
-
-std::size_t views_to_keep(const Sizes& sizes, const Options& options) {
+std::size_t views_to_keep(const Sizes& sizes, const Options& options, const MemoryBudget& budget) {
   const std::uint64_t most = std::max<std::uint64_t>(sizes.views, 2);
-  if (options.max_bytes == 0) return most;
   const std::uint64_t least = bytes_needed(sizes, 2);
-  require(std::max(least, sizes.vertices * options.bytes_afterwards), options,
-          fmt::format("refining a mesh of {} vertices", sizes.vertices));
+  budget.require(std::max(least, sizes.vertices * options.bytes_afterwards),
+                 fmt::format("refining a mesh of {} vertices", sizes.vertices));
   const std::uint64_t each = sizes.vertices * sizeof(VertexImage);
-  return std::min(most, 2 + (options.max_bytes - least) / std::max<std::uint64_t>(each, 1));
+  return 2 + std::min(most - 2, (budget.left() - least) / std::max<std::uint64_t>(each, 1));
 }
 
 }  // namespace axial::refine

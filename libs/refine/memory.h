@@ -15,12 +15,10 @@ struct Sizes {
 };
 
 // Returns the number of views whose VertexImages are kept in memory: the largest number for which
-// bytes_needed() does not exceed Options::max_bytes, but at most max(sizes.views, 2). With
-// max_bytes 0, the result is max(sizes.views, 2). Throws an Error if bytes_needed() for two views,
-// or the memory of the caller afterwards (Options::bytes_afterwards), exceeds max_bytes. The
-// message contains Options::name_of("max_memory"), the number of vertices and the missing
-// megabytes.
-std::size_t views_to_keep(const Sizes& sizes, const Options& options);
+// bytes_needed() is within `budget`, but at most max(sizes.views, 2). Throws the Error of
+// MemoryBudget::require() with the number of vertices if bytes_needed() for two views, or the
+// memory of the caller afterwards (Options::bytes_afterwards), is more.
+std::size_t views_to_keep(const Sizes& sizes, const Options& options, const MemoryBudget& budget);
 
 // An estimate of the memory [bytes] that refine() needs if the VertexImages of `kept` views are
 // kept. Counted: the arrays over vertices and faces, the images of one reference view and the
@@ -29,8 +27,6 @@ std::size_t views_to_keep(const Sizes& sizes, const Options& options);
 std::uint64_t bytes_needed(const Sizes& sizes, std::uint64_t kept);
 
 // The memory [bytes] while `marked` faces of the mesh are split (split.h), besides the mesh.
-// Error as for views_to_keep() if it is more than Options::max_bytes.
 std::uint64_t bytes_to_split(const Sizes& sizes, std::uint64_t marked);
-void require_memory_to_split(const Sizes& sizes, std::uint64_t marked, const Options& options);
 
 }  // namespace axial::refine

@@ -72,6 +72,7 @@ class Refinement {
         pictures_(pictures),
         options_(options),
         context_(context),
+        budget_(context.memory().share()),
         work_(options, state.done, context.stage("Refined")) {}
 
   void run(const Checkpoint& checkpoint) {
@@ -104,7 +105,7 @@ class Refinement {
             geometry::most_pixels(views_)};
   }
 
-  void plan_memory() { kept_ = views_to_keep(sizes(), options_); }
+  void plan_memory() { kept_ = views_to_keep(sizes(), options_, budget_); }
 
   // Splits large faces, and chooses the pairs of views.
   void prepare(const ScaledViews& views) {
@@ -114,7 +115,8 @@ class Refinement {
       const std::vector<bool> large = large_faces(views, k < kMostSplits);
       const auto marked = static_cast<std::uint64_t>(std::ranges::count(large, true));
       if (marked == 0) break;
-      require_memory_to_split(sizes(), marked, options_);
+      budget_.require(bytes_to_split(sizes(), marked),
+                      fmt::format("splitting {} of {} faces", marked, mesh_.faces.size()));
       report_.split_faces += split_faces(mesh_, large);
     }
     if (state_.pairs.empty()) fail("no two views see the same part of the mesh");
@@ -226,6 +228,7 @@ class Refinement {
   const Pictures& pictures_;
   const Options& options_;
   const Context& context_;
+  MemoryBudget budget_;
   const Work work_;
   Topology topology_;
   std::vector<double> information_;  // of every vertex in the last step

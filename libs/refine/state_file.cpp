@@ -25,7 +25,7 @@ std::string_view bytes_of(const std::vector<T>& values) {
 std::string fingerprint(const Mesh& mesh, const Options& options, const std::string& views) {
   // A new option does not compile until it has a name here.
   const auto& [scales, scale_step, max_views, references, smoothness, anchor, max_face_area,
-               max_bytes, bytes_afterwards, name_of] = options;
+               bytes_afterwards] = options;
   Fingerprint print;
   print.add(kKind).add(bytes_of(mesh.vertices)).add(bytes_of(mesh.colors));
   print.add(bytes_of(mesh.faces)).add(views);

@@ -13,7 +13,7 @@
 namespace axial::refine {
 
 // Returns a fingerprint of everything that the result of refine() depends on: all options except
-// max_bytes and name_of, `mesh`, and `views`, which is itself a fingerprint of the cameras, poses
+// bytes_afterwards, `mesh`, and `views`, which is itself a fingerprint of the cameras, poses
 // and pixels of all views.
 std::string fingerprint(const Mesh& mesh, const Options& options, const std::string& views);
 

@@ -113,7 +113,8 @@ std::vector<Plate> try_to_lay(const RayScene& ground, const Lens& lens, std::spa
   if (bar > 0) add_ground(ground, *place + step, 1.5 * layout.side, points);
   if (points.size() < 40) return {};
   const Plane plane = plane_above(points, *place);
-  if (plane.slope.norm() > kMostSlope || plane.roughness > std::min(0.6 * layout.side, 0.2)) return {};
+  if (plane.slope.norm() > kMostSlope || plane.roughness > std::min(0.6 * layout.side, 0.2))
+    return {};
   const Eigen::Matrix3d axes = axes_on(plane, along);
   const Eigen::Matrix3d turned = axes * Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ());
   const Eigen::Vector3d middle = *place + Eigen::Vector3d(0, 0, plane.height);

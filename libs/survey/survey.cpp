@@ -99,11 +99,11 @@ void keep_inputs(std::span<const fs::path> outputs, std::span<const fs::path> in
   for (const fs::path& output : outputs) require_writable(output);
 }
 
-Survey open_scene(const Options& options) {
+Survey open_scene(const Options& options, const Context& context) {
   const fs::path& file = options.files.scene;
-  if (options.has_memory_limit)
+  if (context.memory().is_limited())
     if (const auto counts = io::count_mvs(file))
-      options.memory.require(counts->reading_bytes(), "reading " + file.string());
+      context.memory().require(counts->reading_bytes(), "reading " + file.string());
   Survey survey{options.memory_survey ? scene_of(*options.memory_survey)
                                       : io::read_scene_with_cameras(options.files),
                 options,

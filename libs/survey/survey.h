@@ -73,7 +73,7 @@ void use_mask_label(Options& options, int label);
 // checks check() and makes a copy. No photograph is read. `inputs` are the files that belong to the
 // scene (io::files_of_scene). Errors as for io::read_scene_with_cameras(), and for too little
 // memory.
-Survey open_scene(const Options& options);
+Survey open_scene(const Options& options, const Context& context = {});
 
 // Finds the photographs and their masks, and reads the headers of the photographs. All calibrated
 // images are used, or only the images that Options::views_file names. Photographs, masks and the

@@ -111,7 +111,7 @@ Atlas plan_atlas(const Charts& charts, ChartTiles tiles, const PackingOptions& o
   return atlas;
 }
 
-void begin_tile(Atlas& atlas, std::size_t tile, const Rgb& empty, const Budget& budget) {
+void begin_tile(Atlas& atlas, std::size_t tile, const Rgb& empty, const MemoryBudget& budget) {
   atlas.textures.clear();
   atlas.tile = tile;
   const std::vector<cv::Size>& sizes = atlas.sizes[tile];
@@ -121,7 +121,7 @@ void begin_tile(Atlas& atlas, std::size_t tile, const Rgb& empty, const Budget& 
 }
 
 Atlas lay_out(const Charts& charts, const PackingOptions& options, const Rgb& empty,
-              const Budget& budget) {
+              const MemoryBudget& budget) {
   Atlas atlas = plan_atlas(charts, {}, options);
   begin_tile(atlas, 0, empty, budget);
   return atlas;

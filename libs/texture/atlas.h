@@ -7,9 +7,9 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "axial/base.h"
 #include "scene/mesh.h"
 #include "texture/charts.h"
-#include "texture/memory.h"
 #include "texture/packing.h"
 
 namespace axial::texture {
@@ -74,11 +74,11 @@ Atlas plan_atlas(const Charts& charts, ChartTiles tiles, const PackingOptions& o
 
 // Makes the textures of `tile`, in place of those of another tile, and fills them with the colour
 // `empty` (R G B). Throws an Error if the textures need more memory than `budget` allows.
-void begin_tile(Atlas& atlas, std::size_t tile, const Rgb& empty, const Budget& budget);
+void begin_tile(Atlas& atlas, std::size_t tile, const Rgb& empty, const MemoryBudget& budget);
 
 // plan_atlas() and begin_tile() for one tile.
 Atlas lay_out(const Charts& charts, const PackingOptions& options, const Rgb& empty,
-              const Budget& budget = {});
+              const MemoryBudget& budget = {});
 
 // The memory [bytes] of textures of these sizes.
 std::uint64_t bytes_of_textures(std::span<const cv::Size> sizes);

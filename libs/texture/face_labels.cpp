@@ -19,7 +19,7 @@ std::uint64_t bytes_of(const FaceViews& views) {
   return views.sights.size() * sizeof(Sight) + views.begin.size() * sizeof(views.begin[0]);
 }
 
-void require_choice(const FaceViews& seen, const Budget& budget) {
+void require_choice(const FaceViews& seen, const MemoryBudget& budget) {
   budget.require(bytes_of(seen) + bytes_to_choose_views(seen),
                  fmt::format("choosing the views of {} faces", seen.faces()));
 }
@@ -57,18 +57,18 @@ class TileLabels {
   }
 
   void label(std::size_t tile, const Surroundings& whole, const Sources& sources,
-             const Budget& budget, Report& report) {
+             const MemoryBudget& budget, Report& report) {
     const Group group = group_of(tile);
     if (group.faces.empty()) return;
     const std::span free = std::span(group.faces).first(group.free);
     const std::uint64_t part_bytes =
         bytes_of_part(std::min(3 * free.size(), mesh_.vertices.size()), free.size()) +
         group.faces.size() * sizeof(group.faces[0]) + group.pairs.size() * sizeof(FacePair);
-    const Budget rest = budget.without(part_bytes, "listing the faces of a tile");
-    FaceViews seen = look(free, tile, whole, sources, rest);
+    const auto part = budget.reserve(part_bytes, "listing the faces of a tile");
+    FaceViews seen = look(free, tile, whole, sources, budget);
     report.outliers += without_outliers(seen, free, tile, sources.options.outlier_threshold);
     keep_labels(seen, group);
-    require_choice(seen, rest);
+    require_choice(seen, budget);
     const auto chosen = choose_views(seen, group.pairs, sources.options.labels);
     for (std::size_t i = 0; i < group.free; ++i)
       if (tiles_.of_face[group.faces[i]] == tile) labels_[group.faces[i]] = chosen[i];
@@ -117,7 +117,7 @@ class TileLabels {
   }
 
   FaceViews look(std::span<const std::uint32_t> faces, std::size_t tile, const Surroundings& whole,
-                 const Sources& sources, const Budget& budget) const {
+                 const Sources& sources, const MemoryBudget& budget) const {
     const MeshPart part = mesh_of_faces(mesh_, faces);
     const std::string stage =
         fmt::format("Views of faces, tile {} of {}", tile + 1, tiles_.count());
@@ -156,7 +156,7 @@ class TileLabels {
 };
 
 std::vector<std::uint32_t> label_in_one_piece(const Mesh& mesh, std::span<const FacePair> pairs,
-                                              const Sources& sources, const Budget& budget,
+                                              const Sources& sources, const MemoryBudget& budget,
                                               Report& report) {
   const Options& options = sources.options;
   FaceViews seen =
@@ -171,13 +171,13 @@ std::vector<std::uint32_t> label_in_one_piece(const Mesh& mesh, std::span<const 
 
 std::vector<std::uint32_t> label_by_tiles(const Mesh& mesh, std::span<const FacePair> pairs,
                                           const FaceTiles& tiles, const Sources& sources,
-                                          const Budget& budget, Report& report) {
-  const Budget rest = budget.without(TileLabels::bytes(mesh) + bytes_of_surroundings(mesh),
-                                     fmt::format("a tree of {} faces", mesh.faces.size()));
+                                          const MemoryBudget& budget, Report& report) {
+  const auto tree = budget.reserve(TileLabels::bytes(mesh) + bytes_of_surroundings(mesh),
+                                   fmt::format("a tree of {} faces", mesh.faces.size()));
   const Surroundings whole(mesh);
   TileLabels labels(mesh, pairs, tiles);
   for (std::size_t tile = 0; tile < tiles.count(); ++tile) {
-    labels.label(tile, whole, sources, rest.less_by("tiles"), report);
+    labels.label(tile, whole, sources, sources.less_by_tiles(budget), report);
     return_freed_memory();
   }
   return labels.take();
@@ -185,12 +185,17 @@ std::vector<std::uint32_t> label_by_tiles(const Mesh& mesh, std::span<const Face
 
 }  // namespace
 
+MemoryBudget Sources::less_by_tiles(const MemoryBudget& budget) const {
+  return budget.with_advice("; a larger " + options.name_of("tiles") + " needs less memory");
+}
+
 std::vector<std::uint32_t> label_faces(const Mesh& mesh, std::span<const FacePair> pairs,
                                        const FaceTiles& tiles, const Sources& sources,
-                                       const Budget& budget, Report& report) {
+                                       const MemoryBudget& budget, Report& report) {
   std::vector<std::uint32_t> labels =
-      tiles.count() == 1 ? label_in_one_piece(mesh, pairs, sources, budget.less_by("tiles"), report)
-                         : label_by_tiles(mesh, pairs, tiles, sources, budget, report);
+      tiles.count() == 1
+          ? label_in_one_piece(mesh, pairs, sources, sources.less_by_tiles(budget), report)
+          : label_by_tiles(mesh, pairs, tiles, sources, budget, report);
   if (std::ranges::all_of(labels, [](std::uint32_t label) { return label == kNoView; }))
     fail("no view sees a face of the mesh");
   return labels;

@@ -18,7 +18,6 @@
 
 #include "axial/texture.h"
 #include "texture/adjacency.h"
-#include "texture/memory.h"
 #include "texture/mesh_tiles.h"
 
 namespace axial::texture {
@@ -31,12 +30,15 @@ struct Sources {
   const ImageSource& images;
   const Options& options;
   const Context& context;
+
+  // The same budget, with errors that tell that a larger number of tiles needs less memory.
+  MemoryBudget less_by_tiles(const MemoryBudget& budget) const;
 };
 
 // Returns the label of each face (labels.h). `pairs`: the result of face_pairs(). Sets
 // Report::outliers. Errors as for texture_mesh(). `budget`: besides the mesh, `pairs` and `tiles`.
 std::vector<std::uint32_t> label_faces(const Mesh& mesh, std::span<const FacePair> pairs,
                                        const FaceTiles& tiles, const Sources& sources,
-                                       const Budget& budget, Report& report);
+                                       const MemoryBudget& budget, Report& report);
 
 }  // namespace axial::texture

@@ -273,7 +273,7 @@ class SeenFaces {
     const std::uint64_t each = bytes_of_view(mesh, views, memory.image_bytes);
     budget_.require(fixed + each, fmt::format("finding the views of {} faces", faces_));
     // Half of the memory is for what the views see.
-    in_flight_ = std::clamp<std::uint64_t>(budget_.room(fixed) / 2 / each, 1, thread_count());
+    in_flight_ = std::clamp<std::uint64_t>((budget_.left() - fixed) / 2 / each, 1, thread_count());
     in_work_ = fixed + in_flight_ * each;
   }
 
@@ -283,7 +283,7 @@ class SeenFaces {
     seen.shrink_to_fit();
     const std::lock_guard lock(mutex_);
     count_ += seen.size();
-    if (bytes() <= budget_.room(0))
+    if (bytes() <= budget_.left())
       of_view_[view] = std::move(seen);
     else
       std::vector<std::vector<SeenFace>>(of_view_.size()).swap(of_view_);
@@ -304,7 +304,7 @@ class SeenFaces {
   }
 
   std::size_t faces_;
-  const Budget& budget_;
+  MemoryBudget budget_;
   const ProgressSink& progress_;
   std::size_t in_flight_ = 1;
   std::uint64_t in_work_ = 0;  // [bytes]

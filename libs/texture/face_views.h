@@ -11,13 +11,12 @@
 #include "base/progress.h"
 #include "geometry/surface.h"
 #include "scene/mesh.h"
-#include "texture/memory.h"
 #include "texture/mesh_tiles.h"
 
 namespace axial::texture {
 
 struct ViewMemory {
-  Budget budget;                  // of find_face_views() with its result, besides the mesh
+  MemoryBudget budget;            // of find_face_views() with its result, besides the mesh
   std::uint64_t image_bytes = 0;  // of ImageSource while it makes an image, with the image
 };
 

@@ -90,7 +90,7 @@ std::string work_of(std::span<const Seam> seams) {
 
 Corrections find_corrections(const Mesh& mesh, const Charts& charts, std::span<const Seam> seams,
                              SeamColors colors, const LevelingOptions& options,
-                             const Budget& budget) {
+                             const MemoryBudget& budget) {
   budget.require(bytes_to_level_globally(mesh.faces.size(), seams.size(), charts.nodes.size()),
                  work_of(seams));
   Corrections result{std::move(colors), {}};
@@ -103,11 +103,11 @@ Corrections find_corrections(const Mesh& mesh, const Charts& charts, std::span<c
 
 void level_charts(Atlas& atlas, const Charts& charts, std::span<const Seam> seams,
                   const Corrections& corrections, const LevelingOptions& options,
-                  const Budget& budget) {
+                  const MemoryBudget& budget) {
   const geometry::Lists<Side> sides = sides_of(charts, seams);
   const Leveling leveling{atlas, charts, seams, corrections.colors, corrections.global};
   const std::size_t in_flight =
-      budget.items(0, bytes_of_largest_field(atlas), thread_count(), work_of(seams));
+      budget.items(bytes_of_largest_field(atlas), thread_count(), work_of(seams));
   for_each_in_flight(charts.charts.size(), in_flight, [&](std::size_t chart) {
     if (!atlas.in_work(chart)) return;
     ChartField field = leveling.global_field(chart);

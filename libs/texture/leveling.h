@@ -4,8 +4,8 @@
 
 #include <span>
 
+#include "axial/base.h"
 #include "texture/global_leveling.h"
-#include "texture/memory.h"
 
 namespace axial::texture {
 
@@ -19,7 +19,7 @@ struct Corrections {
 // result of find_seams(). Error if `budget`, besides `colors`, does not suffice.
 Corrections find_corrections(const Mesh& mesh, const Charts& charts, std::span<const Seam> seams,
                              SeamColors colors, const LevelingOptions& options,
-                             const Budget& budget = {});
+                             const MemoryBudget& budget = {});
 
 // Adds the global and the local corrections to the textures of the tile in work, as far as
 // `options` switches them on. The textures are painted (paint() in atlas.h) and not yet levelled.
@@ -41,6 +41,6 @@ Corrections find_corrections(const Mesh& mesh, const Charts& charts, std::span<c
 // arguments, allows, at least one. Error if `budget` does not suffice for one.
 void level_charts(Atlas& atlas, const Charts& charts, std::span<const Seam> seams,
                   const Corrections& corrections, const LevelingOptions& options,
-                  const Budget& budget = {});
+                  const MemoryBudget& budget = {});
 
 }  // namespace axial::texture

@@ -175,7 +175,7 @@ std::uint64_t bytes_to_split(std::uint64_t faces, std::uint64_t split) {
 }
 
 std::size_t split_faces(Mesh& mesh, std::span<const View> views, const SplitOptions& options,
-                        const Budget& budget, const Context& context) {
+                        const MemoryBudget& budget, const Context& context) {
   const std::size_t before = mesh.faces.size();
   constexpr int kMostRounds = 16;
   for (int round = 0; round < kMostRounds; ++round) {

@@ -10,7 +10,6 @@
 #include "axial/texture.h"
 #include "base/context.h"
 #include "scene/mesh.h"
-#include "texture/memory.h"
 
 namespace axial::texture {
 
@@ -30,7 +29,7 @@ namespace axial::texture {
 // number of faces has grown. Error if a round needs more memory than `budget` allows; earlier
 // rounds have then changed the mesh.
 std::size_t split_faces(Mesh& mesh, std::span<const View> views, const SplitOptions& options = {},
-                        const Budget& budget = {}, const Context& context = {});
+                        const MemoryBudget& budget = {}, const Context& context = {});
 
 // The memory [bytes] of a round of split_faces() for a mesh of this size, besides the mesh.
 // `split`: the number of edges that the round splits.

@@ -37,25 +37,27 @@ void texture_tiles(Mesh mesh, std::span<const View> views, const ImageSource& im
   Report& facts = report ? *report : own;
   facts = {};
   const std::uint64_t given = bytes_of(mesh);
-  Budget budget(options.max_bytes, options.name_of);
+  const MemoryBudget budget = context.memory().share();
   facts.new_faces = split_faces(mesh, views, options.split, budget, context);
-  budget = budget.without(bytes_of(mesh) - given, "splitting faces");
+  const auto of_split = budget.reserve(bytes_of(mesh) - given, "splitting faces");
   budget.require(bytes_to_pair(mesh.faces.size()), "listing the edges of the mesh");
   const std::vector<FacePair> pairs = face_pairs(mesh.faces);
-  budget = budget.without(pairs.size() * sizeof(FacePair), "listing the edges of the mesh");
-  budget = budget.without(bytes_to_divide(mesh, options.tiles), "dividing the mesh");
+  const auto of_pairs =
+      budget.reserve(pairs.size() * sizeof(FacePair), "listing the edges of the mesh");
+  const auto of_tiles = budget.reserve(bytes_to_divide(mesh, options.tiles), "dividing the mesh");
   FaceTiles tiles = divide_faces(mesh, options.tiles, options.axes);
   const Sources sources{views, images, options, context};
   const std::vector<std::uint32_t> labels = label_faces(mesh, pairs, tiles, sources, budget, facts);
   return_freed_memory();
   facts.unseen_faces = static_cast<std::size_t>(std::ranges::count(labels, kNoView));
-  budget = budget.without(labels.size() * sizeof(labels[0]) +
-                              bytes_of_charts(labels.size(), most_nodes(mesh, pairs, labels)),
-                          "joining faces to charts");
+  const auto of_charts =
+      budget.reserve(labels.size() * sizeof(labels[0]) +
+                         bytes_of_charts(labels.size(), most_nodes(mesh, pairs, labels)),
+                     "joining faces to charts");
   const Charts charts = make_charts(mesh, pairs, labels, views);
   facts.charts = charts.charts.size();
-  ChartTiles of_charts = give_charts(tiles, charts);
-  TilePainter painter(mesh, charts, pairs, tiles, std::move(of_charts), sources, budget);
+  ChartTiles chart_tiles = give_charts(tiles, charts);
+  TilePainter painter(mesh, charts, pairs, tiles, std::move(chart_tiles), sources, budget);
   facts.scaled_down = painter.scaled_down();
   painter.run(take);
 }

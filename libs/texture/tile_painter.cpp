@@ -11,9 +11,9 @@ namespace axial::texture {
 namespace {
 
 // The most photographs that are painted at the same time.
-std::size_t painted_at_once(const Sources& sources, const Budget& budget) {
+std::size_t painted_at_once(const Sources& sources, const MemoryBudget& budget) {
   const std::uint64_t pixels = geometry::most_pixels(sources.views);
-  return budget.items(0, sources.options.image_bytes + bytes_to_paint(pixels), thread_count(),
+  return budget.items(sources.options.image_bytes + bytes_to_paint(pixels), thread_count(),
                       "painting textures");
 }
 
@@ -67,15 +67,16 @@ ChartTiles give_charts(FaceTiles& tiles, const Charts& charts) {
 
 TilePainter::TilePainter(Mesh& mesh, const Charts& charts, std::span<const FacePair> pairs,
                          const FaceTiles& tiles, ChartTiles of_charts, const Sources& sources,
-                         const Budget& budget)
+                         const MemoryBudget& budget)
     : mesh_(mesh),
       charts_(charts),
       tiles_(tiles),
       sources_(sources),
       seams_(find_seams(charts, mesh, pairs)),
       atlas_(plan_atlas(charts, std::move(of_charts), sources.options.packing)),
-      budget_(budget.without(bytes_of_atlas(atlas_) + seams_.size() * sizeof(Seam),
-                             fmt::format("packing {} charts", charts.charts.size()))) {
+      budget_(budget),
+      of_atlas_(budget_.reserve(bytes_of_atlas(atlas_) + seams_.size() * sizeof(Seam),
+                                fmt::format("packing {} charts", charts.charts.size()))) {
   if (atlas_.scaled_down > 0)
     sources_.context.warning(
         "{} parts of photographs are larger than a texture and are scaled down",
@@ -101,17 +102,17 @@ void TilePainter::check_writing() const {
   for (const ResultSize& size : sizes_of_tiles(mesh_, charts_, tiles_, atlas_)) {
     const std::uint64_t part = tiles_.count() > 1 ? bytes_of_part(size.vertices, size.faces) : 0;
     const auto& to_write = sources_.options.bytes_to_write;
-    budget_.less_by("tiles").require(held + part + size.faces * kOfFace +
-                                         bytes_of_textures(size.textures) +
-                                         (to_write ? to_write(size) : 0),
-                                     fmt::format("writing {} textures", size.textures.size()));
+    sources_.less_by_tiles(budget_).require(
+        held + part + size.faces * kOfFace + bytes_of_textures(size.textures) +
+            (to_write ? to_write(size) : 0),
+        fmt::format("writing {} textures", size.textures.size()));
   }
 }
 
 Corrections TilePainter::corrections_of_all() {
   const LevelingOptions& options = sources_.options.leveling;
-  budget_ =
-      budget_.without(bytes_of_corrections(), fmt::format("levelling {} seams", seams_.size()));
+  of_corrections_ =
+      budget_.reserve(bytes_of_corrections(), fmt::format("levelling {} seams", seams_.size()));
   SeamColors colors = seam_samples(atlas_, seams_);
   for (std::size_t tile = 0; tile < tiles_.count(); ++tile) {
     paint_tile(tile);
@@ -119,19 +120,19 @@ Corrections TilePainter::corrections_of_all() {
   }
   if (tiles_.count() > 1) atlas_.textures.clear();
   return_freed_memory();
-  return find_corrections(
-      mesh_, charts_, seams_, std::move(colors), options,
-      budget_.without(bytes_of_textures(tiles_.count() > 1 ? std::span<const cv::Size>()
+  const auto painted =
+      budget_.reserve(bytes_of_textures(tiles_.count() > 1 ? std::span<const cv::Size>()
                                                            : std::span(atlas_.sizes[0])),
-                      "painting textures"));
+                      "painting textures");
+  return find_corrections(mesh_, charts_, seams_, std::move(colors), options, budget_);
 }
 
 void TilePainter::paint_tile(std::size_t tile) {
-  const Budget budget = budget_.less_by("tiles");
+  const MemoryBudget budget = sources_.less_by_tiles(budget_);
   begin_tile(atlas_, tile, sources_.options.empty_color, budget);
-  const Budget rest = budget.without(bytes_of_textures(atlas_.sizes[tile]), "painting textures");
+  const auto painted = budget.reserve(bytes_of_textures(atlas_.sizes[tile]), "painting textures");
   paint(atlas_, charts_, sources_.views.size(), sources_.images, sources_.options.sharpness_weight,
-        painted_at_once(sources_, rest));
+        painted_at_once(sources_, budget));
   return_freed_memory();
 }
 
@@ -172,9 +173,11 @@ void TilePainter::run(const TileSink& take) {
       continue;
     }
     if (!levels || tiles_.count() > 1) paint_tile(tile);
-    if (levels)
-      level_charts(atlas_, charts_, seams_, corrections, sources_.options.leveling,
-                   budget_.without(bytes_of_textures(atlas_.sizes[tile]), "painting textures"));
+    if (levels) {
+      const auto painted =
+          budget_.reserve(bytes_of_textures(atlas_.sizes[tile]), "painting textures");
+      level_charts(atlas_, charts_, seams_, corrections, sources_.options.leveling, budget_);
+    }
     if (tile + 1 == tiles_.count()) corrections = {};
     take(tile, assemble(tile));
     return_freed_memory();

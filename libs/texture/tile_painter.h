@@ -23,7 +23,7 @@ class TilePainter {
   // the arguments leave. Error if it does not suffice to write the meshes of all tiles.
   TilePainter(Mesh& mesh, const Charts& charts, std::span<const FacePair> pairs,
               const FaceTiles& tiles, ChartTiles of_charts, const Sources& sources,
-              const Budget& budget);
+              const MemoryBudget& budget);
 
   // The number of charts that are scaled down.
   std::size_t scaled_down() const { return atlas_.scaled_down; }
@@ -46,7 +46,9 @@ class TilePainter {
   const Sources& sources_;
   std::vector<Seam> seams_;
   Atlas atlas_;
-  Budget budget_;  // besides the seams and the atlas without textures
+  MemoryBudget budget_;
+  MemoryBudget::Reservation of_atlas_;        // and of the seams, without textures
+  MemoryBudget::Reservation of_corrections_;  // until the end
 };
 
 }  // namespace axial::texture

@@ -11,6 +11,7 @@ import dataclasses
 import math
 import pathlib
 import random
+import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
@@ -64,13 +65,20 @@ def drawn(number):
     return Drawn(draw.choice(PRESETS), options, draw.randint(8, 14), focal, port, draw.random() < 0.8)
 
 
+def stated_depth(outcome):
+    """The error of depths that three stated standard deviations allow [mm]."""
+    distance = re.search(r"median distance of ([\d.]+) m", outcome.said)
+    return 1e3 * 3 * (outcome.report.get("depth_sigma") or 0) * (float(distance[1]) if distance else 0)
+
+
 def judged(outcome, right):
     """What is wrong about the result without a word of `reconstruct`; empty if nothing is."""
     if outcome.code != 0 or outcome.warnings:
         return ""
     faults = []
     # Where even the right numbers give no model, no model may come without a word.
-    if math.isinf(right) or outcome.median > max(WRONG * right, right + WRONG_LEAST):
+    most = max(WRONG * right, right + WRONG_LEAST, right + stated_depth(outcome))
+    if math.isinf(right) or outcome.median > most:
         faults.append(f"error {outcome.median:.2f} mm instead of {right:.2f} mm")
     sigma = outcome.report.get("scale_sigma")
     if sigma is not None and abs(outcome.scale - 1) > LENGTHS * sigma + 0.002:

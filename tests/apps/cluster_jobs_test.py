@@ -80,8 +80,8 @@ class Jobs(InFolder):
         self.assertEqual(words[-6:], ["--tiles", "3", "-d", "4", "--tile", "2/3"])
         words = survey.step("densify-tile-1of3")[0].command
         self.assertEqual(words[-4:], ["--tiles", "3", "--tile", "1/3"])
-        self.assertEqual(survey.before_tile_of_mesh("1of3"), [jobs.done("densify")])
-        self.assertEqual(survey.before_tile_of_mesh("3of3"), [jobs.done("mesh-tile-1of3")])
+        self.assertEqual(survey.before_tile_of_mesh("1of3"), [steps.record_file("densify")])
+        self.assertEqual(survey.before_tile_of_mesh("3of3"), [steps.record_file("mesh-tile-1of3")])
         self.assertEqual(self.survey(until="mesh").tiled, [])
         self.assertEqual(self.survey(tiles=3).tiled, ["densify"])
 
@@ -109,7 +109,7 @@ class Jobs(InFolder):
 
     def test_a_damaged_plan_is_made_again(self):
         survey, plan = self.survey(), self.folder / jobs.PLAN
-        whole, record = json.loads(plan.read_text()), self.folder / jobs.done("plan")
+        whole, record = json.loads(plan.read_text()), self.folder / steps.record_file("plan")
         record.write_text("{}")
         self.assertEqual(self.said_by(cluster.forget_damaged_plan, self.folder), "")
         self.assertTrue(record.exists())
@@ -156,7 +156,7 @@ class Jobs(InFolder):
                    "densify-tile-1of3": json.dumps(chain),
                    "densify-tile-2of3": json.dumps({**chain, "chain": "other"})}
         for name, record in records.items():
-            self.write(jobs.done(name), record)
+            self.write(steps.record_file(name), record)
         cluster.forget_what_changed(todo, self.folder)
         self.assertEqual({path.name for path in (self.folder / "steps").glob("*.done.json")},
                          {"plan.done.json", "depth-photometric-1of3.done.json",

@@ -11,8 +11,8 @@ from programs import main, new_folder, write
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # Files that parse or declare the options that they name.
-DECLARE_OPTIONS = {"libs/base/newer_options.cpp", "libs/base/option_values.cpp", "libs/base/program.cpp",
-                   "libs/base/unused_input.cpp", "libs/io/openmvs/scene_options.cpp"}
+DECLARE_OPTIONS = {"libs/base/newer_options.cpp", "libs/base/option_list.h", "libs/base/option_values.cpp",
+                   "libs/base/program.cpp", "libs/base/unused_input.cpp", "libs/io/openmvs/scene_options.cpp"}
 COMMAND_LINES = "libs/experiments/"  # puts together command lines of programs
 
 # The program that names the settings of each library.

@@ -35,7 +35,7 @@ case "$name $*" in
   "colmap mapper "*) mkdir out/colmap/0; printf '\\1\\0\\0\\0\\0\\0\\0\\0' > out/colmap/0/images.bin ;;
   *" --effective-lens "*) echo "1 OPENCV 4 3 9 9 2 1 0 0 0 0" > out/start_lens.txt ;;
   RefinePoses*) mkdir out/refined; echo '{"rms_before_px": 1, "rms_after_px": 1, "cameras": [],
-    "observations_after": 1, "points_after": 1, "images": [], "scale_sigma": 0, "shape_sigma": 0}' \
+    "observations_after": 1, "points_after": 1, "images": [], "scale_sigma": 0, "shape_sigma": 0, "depth_sigma": 0}' \
     > out/refined/report.json ;;
   InterfaceCOLMAP*--mask-path*) mkdir -p out/colmap_masks ;;
   InterfaceCOLMAP*) touch out/scene.mvs ;;

@@ -179,7 +179,8 @@ class Densify(TinyScene):
             *((name, f"--{name}", tiles) for name in ("tiles", "fusion-tiles") for tiles in ("0", "-1", "1001", "x")),
             *((f"--tile {tile}: ", "--tile", tile) for tile in (
                 "x", "2", "/", "1/", "/4", "1/4/5", "a/4", "-1/4", "0/4", "3/2", "1/0", "1/1001", " 1/2")),
-            *(("--tile 2/4: contradicts --tiles 3", "--tile", "2/4", name, "3") for name in ("--tiles", "--fusion-tiles")),
+            *(("--tile 2/4: contradicts --tiles 3", "--tile", "2/4", name, "3")
+              for name in ("--tiles", "--fusion-tiles")),
             ("--fusion-tiles 3: contradicts --tiles 2", "--fusion-tiles", "3", "--tiles", "2"),
             *((" ".join(tiles) + said, *tiles, *more) for tiles in (("--tile", "2/4"), ("--tiles", "4"))
               for said, *more in ((": needs fusion", "--fusion-mode", "1"), (": needs fusion", "--estimate-scale", "1"),

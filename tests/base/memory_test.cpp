@@ -11,8 +11,10 @@
 #include <thread>
 #include <vector>
 
+#include "axial/base.h"
 #include "base/error.h"
 #include "support/empty_folder.h"
+#include "support/error_of.h"
 
 namespace axial {
 namespace {
@@ -111,32 +113,62 @@ TEST(AllocatedMemory, CountsWhatIsHeldAndNothingElse) {
   }
 }
 
-TEST(MemoryAllowance, CountsAtLeastTheProgramItself) {
+TEST(MemoryBudget, OfAProgramCountsAtLeastTheProgramItself) {
   constexpr std::uint64_t kProgram = 1'000'000 * kMegabyte;  // more than this process uses
-  const MemoryAllowance allowance{1'000'010, "--limit", kProgram};
-  EXPECT_EQ(allowance.left(), 10 * kMegabyte);
-  EXPECT_NO_THROW(allowance.require(10 * kMegabyte, "reading a.ply"));
-  try {
-    allowance.require(10 * kMegabyte + 1, "reading a.ply");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "--limit: 1000010 MB are too little, reading a.ply needs 1000011 MB");
-  }
-  EXPECT_EQ((MemoryAllowance{999'999, "--limit", kProgram}.left()), 0u);
+  const auto budget = MemoryBudget::of_program(1'000'010, "--limit", kProgram);
+  EXPECT_EQ(budget.left(), 10 * kMegabyte);
+  EXPECT_NO_THROW(budget.require(10 * kMegabyte, "reading a.ply"));
+  EXPECT_EQ(test::error_of([&] { budget.require(10 * kMegabyte + 1, "reading a.ply"); }),
+            "--limit: 1000010 MB are too little, reading a.ply needs 1000011 MB");
+  EXPECT_EQ(MemoryBudget::of_program(999'999, "--limit", kProgram).left(), 0u);
 }
 
-TEST(MemoryAllowance, CountsWhatTheProcessUses) {
-  const MemoryAllowance tiny{1, "--limit", 0};  // less than this process uses
+TEST(MemoryBudget, OfAProgramCountsWhatTheProcessUses) {
+  const auto tiny = MemoryBudget::of_program(1, "--limit", 0);  // less than this process uses
   EXPECT_EQ(tiny.left(), 0u);
   EXPECT_THROW(tiny.require(0, "work"), Error);
   const std::uint64_t used = resident_memory();
-  const MemoryAllowance allowance{used / kMegabyte + 100, "--limit", 0};
+  const auto budget = MemoryBudget::of_program(used / kMegabyte + 100, "--limit", 0);
   constexpr std::uint64_t kSlack = 20 * kMegabyte;  // what the process uses changes a little
-  EXPECT_NEAR(static_cast<double>(allowance.left()), 100.0 * kMegabyte,
-              static_cast<double>(kSlack));
-  EXPECT_NO_THROW(allowance.require(100 * kMegabyte - kSlack, "work"));
-  EXPECT_THROW(allowance.require(100 * kMegabyte + kSlack, "work"), Error);
+  EXPECT_NEAR(static_cast<double>(budget.left()), 100.0 * kMegabyte, static_cast<double>(kSlack));
+  EXPECT_NO_THROW(budget.require(100 * kMegabyte - kSlack, "work"));
+  EXPECT_THROW(budget.require(100 * kMegabyte + kSlack, "work"), Error);
+}
+
+TEST(MemoryBudget, CountsReservationsWhileTheyLive) {
+  const auto budget = MemoryBudget::of_bytes(10 * kMegabyte, "limit");
+  const MemoryBudget copy = budget.with_advice("; use less");
+  {
+    const auto first = budget.reserve(4 * kMegabyte, "a list");
+    auto second = copy.reserve(3 * kMegabyte);
+    EXPECT_EQ(budget.left(), 3 * kMegabyte);
+    second = copy.reserve(1 * kMegabyte);
+    EXPECT_EQ(copy.share().items(2 * kMegabyte, 9, "work"), 2u);
+    EXPECT_EQ(copy.items(1, 9, "work"), 9u);
+    EXPECT_EQ(test::error_of([&] { copy.require(6 * kMegabyte, "a tree"); }),
+              "limit: a tree needs 2 MB more; use less");
+    const auto more = budget.reserve(9 * kMegabyte);
+    EXPECT_EQ(budget.left(), 0u);
+  }
+  EXPECT_EQ(budget.left(), 10 * kMegabyte);
+}
+
+TEST(MemoryBudget, AShareDoesNotCountTheProcess) {
+  const auto whole = MemoryBudget::of_program(1'000'010, "limit", 1'000'000 * kMegabyte);
+  const auto taken = whole.reserve(4 * kMegabyte);
+  const MemoryBudget share = whole.share();
+  EXPECT_EQ(share.left(), 6 * kMegabyte);
+  const auto all = share.reserve(6 * kMegabyte, "work");
+  EXPECT_EQ(share.left(), 0u);
+  EXPECT_EQ(whole.left(), 6 * kMegabyte);
+}
+
+TEST(MemoryBudget, WithoutALimitAllowsEverything) {
+  const MemoryBudget budget;
+  const auto much = budget.reserve(UINT64_MAX / 2, "work");
+  EXPECT_NO_THROW(budget.require(UINT64_MAX, "work"));
+  EXPECT_EQ(budget.left(), UINT64_MAX);
+  EXPECT_EQ(budget.items(UINT64_MAX / 4, 9, "work"), 4u);
 }
 
 // Other blocks lie between the large ones, so that a heap could not shrink.

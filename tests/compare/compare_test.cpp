@@ -199,10 +199,10 @@ TEST(Compare, RefusesSurveysOfDifferentPlaces) {
 }
 
 TEST(Compare, NeedsMemory) {
-  CompareOptions options = options_of(false);
-  options.memory = {1, "max_memory", 0};
-  const std::string message =
-      error_of([&] { compare_surveys(survey_before(), survey_after(), kFrame, options); });
+  const Context context({}, {}, {MemoryBudget::of_program(1)});
+  const std::string message = error_of([&] {
+    compare_surveys(survey_before(), survey_after(), kFrame, options_of(false), context);
+  });
   EXPECT_THAT(message, HasSubstr("max_memory"));
   EXPECT_THAT(message, HasSubstr("pixels"));
 }

@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 class Densify : public FloorTest {};
 
@@ -77,13 +78,11 @@ TEST_F(Densify, ThreadsAndMemoryDoNotChangeTheCloud) {
   const std::string cloud = read_file(folder_ / "out" / "dense.ply");
   use_folder("other");
   const std::uint64_t least = least_memory(options_);
-  options_.survey.memory.megabytes = least - 1;
-  EXPECT_THAT(test::error_of([&] { densify(options_); }), HasSubstr("are too little"));
-  options_.survey.memory.megabytes = least;
+  EXPECT_THAT(test::error_of([&] { densify(options_, {}, with_memory(least - 1)); }),
+              HasSubstr("are too little"));
   for (const unsigned threads : {0u, 1u}) {
     use_folder("threads" + std::to_string(threads));
-    options_.max_threads = threads;
-    densify(options_);
+    densify(options_, {}, with_memory(least, threads));
     EXPECT_EQ(read_file(options_.survey.files.working_folder / "dense.ply"), cloud) << threads;
   }
 }
@@ -135,7 +134,6 @@ TEST_F(Densify, ErrorsNameSettingsInTheWordsOfTheCaller) {
   fs::create_directories(folder_ / "no_masks");
   const fs::path scene = options_.survey.files.scene;
   const std::pair<const char*, std::function<void(Options&)>> cases[] = {
-      {"max_memory 1: ", [](Options& to) { to.survey.memory.megabytes = 1; }},
       {"output ", [&](Options& to) { to.output.scene = scene; }},
       {"report ", [&](Options& to) { to.output.report = scene; }},
       {"neighbour_lists_output ", [&](Options& to) { to.job = NeighbourListsJob{scene}; }},
@@ -155,6 +153,11 @@ TEST_F(Densify, ErrorsNameSettingsInTheWordsOfTheCaller) {
     EXPECT_THAT(error(), AllOf(HasSubstr(words), Not(ContainsRegex("--[a-z]"))));
     options.survey.files.name_of = [](std::string_view name) { return fmt::format("<{}", name); };
     EXPECT_THAT(error(), HasSubstr(std::string("<") + words));
+  }
+  for (const char* setting : {"max_memory", "<max_memory"}) {
+    const Context context({}, {}, {MemoryBudget::of_program(1, setting)});
+    EXPECT_THAT(test::error_of([&] { densify(options_, {}, context); }),
+                StartsWith(fmt::format("{} 1: ", setting)));
   }
 }
 

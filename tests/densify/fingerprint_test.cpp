@@ -86,10 +86,9 @@ TEST_F(FingerprintTest, ChangesWithEverythingThatTheDepthMapsDependOn) {
     EXPECT_TRUE(prints.insert(after(changes[i])).second) << "change " << i;
 }
 
-TEST_F(FingerprintTest, DoesNotDependOnMemoryThreadsAndPictures) {
+TEST_F(FingerprintTest, DoesNotDependOnThreadsAndPictures) {
   const std::string print = after([](Input&) {});
   EXPECT_EQ(print, after([](Input& in) {
-              in.project.options.memory.megabytes = 1000;
               in.matching.overwrite_dmaps = true;
               in.matching.pictures = Pictures::final_maps;
             }));

@@ -72,10 +72,13 @@ class FloorTest : public testing::Test {
     std::filesystem::create_directories(options_.survey.files.working_folder);
   }
 
+  static Context with_memory(std::uint64_t megabytes, std::optional<unsigned> threads = {}) {
+    return Context({}, {}, {MemoryBudget::of_program(megabytes), threads});
+  }
+
   // The least memory [MB] that a run needs, from the message that refuses less.
-  static std::uint64_t least_memory(Options options) {
-    options.survey.memory.megabytes = 1;
-    const std::string refusal = test::error_of([&] { densify(options); });
+  static std::uint64_t least_memory(const Options& options) {
+    const std::string refusal = test::error_of([&] { densify(options, {}, with_memory(1)); });
     const std::string before = "this scene needs ";
     const std::size_t at = refusal.find(before);
     EXPECT_NE(at, std::string::npos) << refusal;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/atomic_file.h"
+#include "base/parallel.h"
 #include "base/tiling.h"
 #include "densify/floor_fixture.h"
 #include "densify/memory_plan.h"
@@ -37,7 +38,7 @@ class FusionTiles : public FloorTest {
   std::string cloud_in(std::size_t tiles, unsigned threads = 0) {
     Options options = options_;
     options.fusion.tiles = tiles;
-    options.max_threads = threads;
+    const ThreadLimit limit(threads);
     densify(options, {}, events_.context);
     return cloud();
   }
@@ -149,8 +150,8 @@ TEST_F(FusionTiles, AreTheSameForAnyThreadsAndMemory) {
   EXPECT_EQ(cloud_in(4, 2), expected);
   Options options = options_;
   options.fusion.tiles = 4;
-  options_.survey.memory.megabytes = least_memory(options);
-  EXPECT_EQ(cloud_in(4), expected);
+  densify(options, {}, with_memory(least_memory(options)));
+  EXPECT_EQ(cloud(), expected);
 }
 
 TEST_F(FusionTiles, OneTileIsTheWholeCloud) {

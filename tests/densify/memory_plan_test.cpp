@@ -222,17 +222,17 @@ TEST(MemoryPlan, MoreRoomAndThreadsHaveLimits) {
 TEST(MemoryPlan, RefusesLessThanTheLeastAndNamesIt) {
   Case from;
   const ThreadLimit one(1);
-  from.options.survey.memory.megabytes = 100;
-  const std::string error = test::error_of([&] { plan_memory(from.project, from.options); });
+  const auto plan = [&](std::uint64_t megabytes) {
+    return plan_memory(from.project, from.options,
+                       Context({}, {}, {MemoryBudget::of_program(megabytes)}));
+  };
+  const std::string error = test::error_of([&] { plan(100); });
   EXPECT_THAT(error,
               testing::StartsWith("max_memory 100: 100 MB are too little, this scene needs "));
   const std::uint64_t needed = std::stoull(error.substr(error.find("needs ") + 6));
   // The need contains what the process has allocated, which may differ a little at the next call.
-  from.options.survey.memory.megabytes = needed + 1;
-  EXPECT_EQ(plan_memory(from.project, from.options).in_flight, 1u);
-  from.options.survey.memory.megabytes = needed - 2;
-  EXPECT_THAT(test::error_of([&] { plan_memory(from.project, from.options); }),
-              testing::HasSubstr("are too little"));
+  EXPECT_EQ(plan(needed + 1).in_flight, 1u);
+  EXPECT_THAT(test::error_of([&] { plan(needed - 2); }), testing::HasSubstr("are too little"));
 }
 
 }  // namespace

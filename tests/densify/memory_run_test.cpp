@@ -79,9 +79,8 @@ TEST_F(MemoryRun, ContinuesInAWorkingFolderAndWritesTheHousing) {
       [&](const Event& event) {
         if (event.text == "Estimated depth maps" && event.done == 2) source.request_stop();
       },
-      source.get_token());
+      source.get_token(), {{}, 1});
   use_folder("work");
-  options_.max_threads = 1;
   EXPECT_THROW(densify(survey, options_, stopping), Stopped);
   std::string lines;
   const MemoryResult result =

@@ -147,9 +147,8 @@ TEST(WriteMaps, BlocksThreadsAndMemoryHaveNoEffect) {
   std::vector<std::string> first;
   for (const int size : {512, 64, 1024}) {
     const ThreadLimit limit(size == 512 ? 1 : 2);
-    write_maps(
-        files, room.content,
-        {.block_size = size, .contour_interval = 0.15, .memory = {size == 64 ? 2000u : 0, "", 0}});
+    write_maps(files, room.content, {.block_size = size, .contour_interval = 0.15},
+               Context({}, {}, {MemoryBudget::of_program(size == 64 ? 2000u : 0)}));
     std::vector<std::string> bytes;
     for (const fs::path& file : files.all()) bytes.push_back(read_file(file));
     if (first.empty()) first = bytes;
@@ -198,11 +197,11 @@ TEST(WriteMaps, OldFilesStayIfMemoryDoesNotSuffice) {
   const fs::path folder = test::empty_folder();
   const MapFiles files = files_in(folder);
   write_atomically(files.heights, "old");
-  EXPECT_THAT(
-      test::error_of([&] {
-        write_maps(files, room.content, {.contour_interval = 0.15, .memory = {1, "memory", 0}});
-      }),
-      testing::HasSubstr("memory"));
+  EXPECT_THAT(test::error_of([&] {
+                write_maps(files, room.content, {.contour_interval = 0.15},
+                           Context({}, {}, {MemoryBudget::of_program(1, "memory")}));
+              }),
+              testing::HasSubstr("memory"));
   EXPECT_EQ(read_file(files.heights), "old");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
 }

@@ -130,9 +130,8 @@ TEST_P(Reconstruct, RefusesWhatIsNoCloudOfTheScene) {
   bad = good;
   bad.positions[3].x() = std::nanf("");
   EXPECT_THAT(refused(bad), HasSubstr("point 3"));
-  ReconstructOptions options;
-  options.max_bytes = 1000;
-  EXPECT_THAT(refused(good, options), HasSubstr("max_memory"));
+  const Context context({}, {}, {MemoryBudget::of_bytes(1000)});
+  EXPECT_THAT(error_of([&] { reconstruct(good, scene, {}, context); }), HasSubstr("max_memory"));
   bad = good;
   bad.view_weights.assign(bad.view_images.size(), 1);
   for (const float weight : {std::nanf(""), -1.0f, 1e30f}) {

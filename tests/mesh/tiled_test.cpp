@@ -192,10 +192,11 @@ TEST_P(Tiled, WrongInputIsRefused) {
       error_of([&] { reconstruct_in_tiles(portions_of(cloud), scene_, options, run_of(2)); }),
       HasSubstr("cannot be simplified"));
   options = merging(0);
-  options.max_bytes = bytes_needed(300);
-  EXPECT_THAT(
-      error_of([&] { reconstruct_in_tiles(portions_of(cloud), scene_, options, run_of(2)); }),
-      HasSubstr("max_memory is 60"));
+  const Context context({}, {}, {MemoryBudget::of_bytes(bytes_needed(300))});
+  EXPECT_THAT(error_of([&] {
+                reconstruct_in_tiles(portions_of(cloud), scene_, options, run_of(2), context);
+              }),
+              HasSubstr("max_memory is 60"));
   cloud.view_images[cloud.view_begin[2500]] = 77;
   EXPECT_THAT(error_of([&] { in_tiles(cloud, 2, 0); }), HasSubstr("point 2500 names view 77"));
 }

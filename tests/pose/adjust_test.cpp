@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <random>
 
+#include "base/order_statistics.h"
+#include "pose/depth_sigma.h"
 #include "pose/survey.h"
 #include "support/error_of.h"
 
@@ -320,6 +322,61 @@ TEST(Uncertainty, OfScaleAndShapeIsHonest) {
   EXPECT_LT(sum2 / predicted2, 1.9);
   // A shape has at least four independent errors: the ratio scatters by sqrt(2 / 120) = 13 %.
   EXPECT_NEAR(shape2 / predicted_shape2, 1, 0.39);
+}
+
+// The median change of the distances of the points, if the camera centres have their true places.
+double error_of_depths(const Bundle& found, const Bundle& truth) {
+  const double scale = pose_errors(found, truth).scale;
+  std::vector<double> ratios;
+  for (const Observation& seen : truth.observations) {
+    const auto distance = [&](const Bundle& bundle) {
+      return (bundle.points[seen.point].position - bundle.images[seen.image].pose.centre).norm();
+    };
+    ratios.push_back(distance(found) / scale / distance(truth));
+  }
+  return upper_median(std::move(ratios)) - 1;
+}
+
+// Focal length and index are known as by a ruler. In each run they are stated with other errors.
+// The noise alone moves the points, too, so the result is compared with that of the right numbers.
+TEST(Uncertainty, OfDepthsIsHonest) {
+  constexpr int kRuns = 40;
+  constexpr double kFocal = 0.005, kIndex = 0.004;
+  const Bundle exact = survey(camera_behind(flat_port(0, 0.05)), {.images = 6, .points = 120});
+  AdjustOptions options;
+  options.pixel_sigma = 0.5;
+  options.loss_sigmas = 100;
+  options.distances.push_back(known_length(exact));
+  const AdjustOptions with_right_numbers = options;
+  options.free[kIndexNumber] = options.free[kFocalNumber] = true;
+  options.prior_sigma[kIndexNumber] = kIndex;
+  options.prior_sigma[kFocalNumber] = kFocal;
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  double sum2 = 0, predicted2 = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    refractive::FlatPort<double> port = flat_port(0, 0.05);
+    port.n_water += kIndex * normal(random);
+    CameraModel stated = camera_behind(port);
+    const double factor = 1 + kFocal * normal(random);
+    stated.lens.fx *= factor;
+    stated.lens.fy *= factor;
+    Bundle bundle = with_noise(exact, 0.5, run);
+    bundle.cameras[0].measured = housed(stated);
+    adjust(bundle, options);
+    Bundle right = with_noise(exact, 0.5, run);
+    adjust(right, with_right_numbers);
+    sum2 += std::pow(error_of_depths(bundle, right), 2);
+    predicted2 += std::pow(depth_sigma(bundle, options), 2);
+  }
+  EXPECT_GT(predicted2, kRuns * std::pow(5e-4, 2)) << "the numbers hardly matter";
+  EXPECT_GT(sum2 / predicted2, 0.3);  // the same limits as for the port
+  EXPECT_LT(sum2 / predicted2, 1.9);
+}
+
+TEST(Uncertainty, OfDepthsIsZeroIfAllNumbersAreFixed) {
+  const Bundle bundle = survey(camera_behind(flat_port()), {.images = 4, .points = 60});
+  EXPECT_EQ(depth_sigma(bundle, {}), 0);
 }
 
 TEST(Uncertainty, OfTheShapeDoesNotDependOnTheScale) {

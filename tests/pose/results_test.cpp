@@ -147,5 +147,16 @@ TEST_F(WriteResults, WarnsOfAWeakShape) {
   EXPECT_FALSE(apps::shape_warning(results(), uncertain));
 }
 
+TEST_F(WriteResults, WarnsOfUncertainDepths) {
+  Uncertainty uncertain = known();
+  uncertain.depth_sigma = 0.004;
+  EXPECT_FALSE(apps::depth_warning(uncertain));
+  EXPECT_THAT(apps::depth_line(uncertain), HasSubstr("known to 0.4 %"));
+  uncertain.depth_sigma = 0.02;
+  EXPECT_THAT(apps::depth_warning(uncertain).value(), HasSubstr("known to 2 %"));
+  uncertain.depth_sigma = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(apps::depth_warning(uncertain).value(), HasSubstr("not known"));
+}
+
 }  // namespace
 }  // namespace axial::pose

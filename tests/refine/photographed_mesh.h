@@ -67,9 +67,10 @@ class PhotographedMesh {
     return median_error(centres);
   }
 
-  refine::Report refine(Mesh& mesh, const refine::Options& options = {}) const {
+  refine::Report refine(Mesh& mesh, const refine::Options& options = {},
+                        const Context& context = {}) const {
     return refine::refine(
-        mesh, views, [&](std::size_t i) { return pictures[i]; }, options);
+        mesh, views, [&](std::size_t i) { return pictures[i]; }, options, context);
   }
 
   TexturedScene scene{.cell = 0.025};

@@ -108,17 +108,15 @@ TEST(Refine, TheResultDoesNotDependOnThreadsAndMemory) {
     scene.refine(one);
   }
   const ThreadLimit limit(2);
-  Options options;
   // Enough for the images of the vertices of two views, of six.
   const Sizes sizes{one.vertices.size(), one.faces.size(), scene.views.size(), 200 * 150};
-  options.max_bytes = bytes_needed(sizes, 2);
-  ASSERT_EQ(views_to_keep(sizes, options), 2u);
+  const auto little = MemoryBudget::of_bytes(bytes_needed(sizes, 2), "the limit");
+  ASSERT_EQ(views_to_keep(sizes, {}, little), 2u);
   ASSERT_GT(sizes.views, 2u);
-  scene.refine(two, options);
+  scene.refine(two, {}, Context({}, {}, {little}));
   EXPECT_TRUE(one.vertices == two.vertices);
-  options.max_bytes = 1'000'000;
-  options.name_of = [](std::string_view) { return std::string("the limit"); };
-  EXPECT_THAT(test::error_of([&] { scene.refine(two, options); }),
+  const Context less({}, {}, {MemoryBudget::of_bytes(1'000'000, "the limit")});
+  EXPECT_THAT(test::error_of([&] { scene.refine(two, {}, less); }),
               testing::StartsWith("the limit: refining a mesh of 5476 vertices needs "));
 }
 

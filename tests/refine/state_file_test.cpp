@@ -180,7 +180,7 @@ TEST(StateFile, TheFingerprintDependsOnEverythingThatChangesTheResult) {
   const Mesh mesh = noisy().mesh;
   Options options;
   std::set<std::string> prints{fingerprint(mesh, options, "views")};
-  options.max_bytes = 7;
+  options.bytes_afterwards = 7;
   prints.insert(fingerprint(mesh, options, "views"));
   EXPECT_EQ(prints.size(), 1u);
   prints.insert(fingerprint(mesh, options, "other views"));

@@ -70,9 +70,9 @@ TEST_F(SurveyTest, NoInputIsOverwritten) {
 }
 
 TEST_F(SurveyTest, TooLittleMemoryIsAnErrorUnlessThereIsNoLimit) {
-  options_.memory = {1, "limit", 0};
-  EXPECT_THAT(error(), AllOf(HasSubstr("limit"), HasSubstr("scene.mvs")));
-  options_.has_memory_limit = false;
+  const Context context({}, {}, {MemoryBudget::of_program(1, "limit")});
+  EXPECT_THAT(test::error_of([&] { open_scene(options_, context); }),
+              AllOf(HasSubstr("limit"), HasSubstr("scene.mvs")));
   EXPECT_EQ(opened().views.size(), 2u);
 }
 

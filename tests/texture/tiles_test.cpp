@@ -33,7 +33,8 @@ Corners corners_of(const Mesh& mesh, std::size_t face) {
 }
 
 std::vector<TexturedMesh> in_tiles(const Mesh& mesh, const test::Room& room, Options options,
-                                   std::size_t tiles, Report* report = nullptr) {
+                                   std::size_t tiles, Report* report = nullptr,
+                                   const Context& context = {}) {
   options.tiles = tiles;
   std::vector<TexturedMesh> result;
   texture_tiles(
@@ -42,7 +43,7 @@ std::vector<TexturedMesh> in_tiles(const Mesh& mesh, const test::Room& room, Opt
         EXPECT_EQ(tile, result.size());
         result.push_back(std::move(textured));
       },
-      report);
+      report, context);
   EXPECT_EQ(result.size(), tiles);
   return result;
 }
@@ -277,12 +278,12 @@ TEST(TextureTiles, TilesNeedLessMemory) {
   const test::Room room = test::photograph_room(4);
   const Mesh mesh = test::refined(test::room_mesh(), 4);
   Options options;
-  options.max_bytes = 20'000'000;
+  const Context context({}, {}, {MemoryBudget::of_bytes(20'000'000)});
   options.bytes_to_write = [](const ResultSize& size) { return 10'000 * size.faces; };
-  EXPECT_THAT(test::error_of([&] { in_tiles(mesh, room, options, 1); }),
+  EXPECT_THAT(test::error_of([&] { in_tiles(mesh, room, options, 1, nullptr, context); }),
               testing::MatchesRegex("max_memory: writing 1 textures needs [0-9]+ MB more; a larger "
                                     "tiles needs less memory"));
-  in_tiles(mesh, room, options, 4);
+  in_tiles(mesh, room, options, 4, nullptr, context);
 }
 
 TEST(TextureTiles, AMeshThatNoViewSeesIsRefused) {

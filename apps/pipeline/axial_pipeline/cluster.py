@@ -14,7 +14,7 @@ from . import cameras, files, jobs
 from .failure import Failure
 from .running import answer_of, die_with, ending
 from .step_kinds import ORDER
-from .steps import Records, is_done, names_from, with_chains
+from .steps import Records, is_done, names_from, record_file, step_of, with_chains
 
 
 def check(given):
@@ -31,7 +31,7 @@ def check(given):
 def forget_what_changed(todo, out):
     """Removes the records of the first step that is not done and of all later steps, and of depth
     maps and tiles that another command made."""
-    records = Records(out / "steps")
+    records = Records(out)
     for number, (step, chain) in enumerate(with_chains(todo)):
         if not is_done(step, chain, records):
             records.forget(names_from(number, todo, ORDER))
@@ -39,17 +39,17 @@ def forget_what_changed(todo, out):
     for step in todo:
         valid = jobs.parts_of(step.name, todo, out)
         for record in jobs.records_of_parts(step.name, out):
-            if record.name.removesuffix(".done.json") not in valid:
+            if step_of(record)[0] not in valid:
                 files.clear(record)
     # The step "mesh" removes the files of its tiles.
-    if not (out / jobs.done("mesh")).exists() and not any(out.glob("scene_dense_mesh.tiles*")):
-        for record in out.glob(jobs.done("mesh-tile-*")):
+    if not (out / record_file("mesh")).exists() and not any(out.glob("scene_dense_mesh.tiles*")):
+        for record in out.glob(record_file("mesh-tile-*")):
             files.clear(record)
 
 
 def forget_damaged_plan(out):
     """Lets the job "plan" run again if its result is damaged or missing."""
-    plan, record = out / jobs.PLAN, out / jobs.done("plan")
+    plan, record = out / jobs.PLAN, out / record_file("plan")
     if jobs.read_plan(out) or not (plan.exists() or record.exists()):
         return
     print(f"{plan}: is damaged or missing, and is made again", flush=True)

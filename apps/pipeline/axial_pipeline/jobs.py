@@ -15,7 +15,7 @@ from . import cameras, files
 from .failure import Failure
 from .option_files import find_option
 from .step_kinds import KINDS, NEEDS_OF_PLAN
-from .steps import Records, Step, chain_to, digest, read_record
+from .steps import Records, Step, chain_to, digest, read_record, record_file, step_of
 
 PACKAGE = pathlib.Path(__file__).resolve().parent
 OPTIONS = pathlib.Path("steps") / "options.json"  # below the folder of the output files
@@ -33,27 +33,22 @@ def code_of(out):
     return hashlib.sha256(str(out).encode()).hexdigest()[:8]
 
 
-def done(name):
-    """The record that a step is done, relative to the folder of the output files."""
-    return f"steps/{name}.done.json"
-
-
 def records_of_parts(name, out):
     """The records of all jobs that made parts of the step `name`."""
-    return [path for pattern in KINDS[name].parts for path in sorted(out.glob(done(pattern)))]
+    return [path for pattern in KINDS[name].parts for path in sorted(out.glob(record_file(pattern)))]
 
 
 def parts_of(name, todo, out):
     """The records of the jobs that made parts of the step `name` of `todo` with its chain, by their names."""
     found = {path: read_record(path) for path in records_of_parts(name, out)}
     chain = digest(chain_to(name, todo)) if found else ""
-    return {path.name.removesuffix(".done.json"): record for path, record in found.items()
+    return {step_of(path)[0]: record for path, record in found.items()
             if record.get("chain") == chain}
 
 
 def seconds_of(step, todo, out):
     """The time of a step that is done, with that of its jobs, one after another."""
-    records = (Records(out / "steps").read(step, "done"), *parts_of(step.name, todo, out).values())
+    records = (Records(out).read(step), *parts_of(step.name, todo, out).values())
     return round(sum(one.get("seconds", 0) for one in records), 1)
 
 
@@ -121,12 +116,12 @@ class Survey:
 
     def job(self, name):
         number = self.names.index(name)
-        before = [done(self.names[number - 1])] if number else []
+        before = [record_file(self.names[number - 1])] if number else []
         return Job(self.out, name, self.node, before, lambda wildcards: self.asked(name))
 
     @property
     def plan(self):
-        return Job(self.out, "plan", self.node, [done("import")],
+        return Job(self.out, "plan", self.node, [record_file("import")],
                    lambda wildcards: self.asked("plan"))
 
     @property
@@ -142,12 +137,12 @@ class Survey:
         """The records of the tiles of the step `name`."""
         if name not in self.tiled:
             return []
-        return [done(f"{name}-tile-{tile}of{self.tiles}") for tile in range(1, self.tiles + 1)]
+        return [record_file(f"{name}-tile-{tile}of{self.tiles}") for tile in range(1, self.tiles + 1)]
 
     def before_tile_of_mesh(self, part):
         """The first tile of the mesh divides the cloud for the others."""
         first = self.tiles_of("mesh")[0]
-        return [done("densify") if first == done(f"mesh-tile-{part}") else first]
+        return [record_file("densify") if first == record_file(f"mesh-tile-{part}") else first]
 
     def asked(self, name, share=1):
         """Megabytes and minutes to ask for. `share`: the part of the images of which a job makes a tile, which has a

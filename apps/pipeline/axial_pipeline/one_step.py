@@ -33,7 +33,7 @@ def run(options):
     os.chdir(config["folder"])
     survey = Survey(config, reconstruct_steps.steps)
     step, chain = survey.step(options.name)
-    records = Records(survey.out / "steps")
+    records = Records(survey.out)
     if not is_done(step, chain, records):
         perform(step, chain, records, survey.out / "logs",
                 limits_of(step.command, options.cpus, options.memory))

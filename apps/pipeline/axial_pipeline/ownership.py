@@ -11,6 +11,7 @@ import os
 from . import files
 from .failure import Failure
 from .step_kinds import KINDS, ORDER, writes_of
+from .steps import STATES, record_file, step_of
 
 REPORT, REPORT_BEGINS = "report.md", b"# Reconstruction\n"
 MOST_NAMED = 10
@@ -18,7 +19,7 @@ MOST_NAMED = 10
 
 def own_files(name):
     """The log and the records of a step or job."""
-    return [f"logs/{name}.log", f"steps/{name}.begun.json*", f"steps/{name}.done.json*"]
+    return [f"logs/{name}.log", *(record_file(name, state) + "*" for state in STATES)]
 
 
 def is_record(record):
@@ -38,8 +39,8 @@ def owned(out):
     record counts if another record shows that the folder is that of a run."""
     found = {}
     for path in (out / "steps").glob("*.json"):
-        name, _, state = path.name.removesuffix(".json").rpartition(".")
-        if state in ("begun", "done"):
+        name, state = step_of(path)
+        if state in STATES:
             record = files.read_object(path)
             found.setdefault(name, {})
             if is_record(record):
@@ -106,9 +107,8 @@ def check(out, steps, is_cluster=False):
 def left_over(out, steps):
     """The files in the folder `out` that earlier runs made in steps that are not among `steps`, and that
     no longer belong to the results of the other steps."""
-    records = out / "steps"
-    stale = [name for name in ORDER if name not in steps and not (records / f"{name}.done.json").exists()
-             and (records / f"{name}.begun.json").exists()]
+    stale = [name for name in ORDER if name not in steps and not (out / record_file(name)).exists()
+             and (out / record_file(name, "begun")).exists()]
     return [one for name in stale for pattern in writes_of(name) for one in existing(out, pattern)]
 
 

@@ -42,6 +42,11 @@ def lines_of_poses(refined):
         yield "- the shape is not known"
     elif shape != 0:
         yield f"- the shape is known to {100 * shape:.2g} % of the distance of the points (one standard deviation)"
+    depth = refined["depth_sigma"]
+    if depth is None:
+        yield "- the distances of the points from the cameras are not known"
+    elif depth != 0:
+        yield f"- the distances of the points from the cameras are known to {100 * depth:.2g} % (one standard deviation)"
     for camera in refined["cameras"]:
         for value in camera["free"]:
             yield f"- camera {camera['id']}, {value['name']}: {line_of_value(value)}"

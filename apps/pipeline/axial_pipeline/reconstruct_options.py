@@ -14,6 +14,7 @@ from .option_files import find_option, has_option
 from .ownership import is_record
 from .programs import NAMES, Programs, default_folder, require, words_of
 from .step_kinds import KINDS, OPTIONS, ORDER, RESULTS
+from .steps import record_file
 
 SKIPPED = [name for name, kind in KINDS.items() if kind.can_be_left_out]
 MOST_TILES = 1000  # as in the programs
@@ -165,7 +166,7 @@ COPIED_WITHIN = 60  # seconds
 def end_of(step, out):
     """When the step of this name ended in the folder `out`, and the uncertainty [s]. None if it is
     not done."""
-    path = out / "steps" / f"{step}.done.json"
+    path = out / record_file(step)
     record = files.read_object(path)
     if not is_record(record):
         return None

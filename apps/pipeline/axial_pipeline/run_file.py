@@ -30,7 +30,7 @@ def warnings_of(logs):
 def entry_of(step, todo, out):
     logs = [out / "logs" / f"{name}.log" for name in (*jobs.parts_of(step.name, todo, out), step.name)]
     return {"name": step.name, "command": step.command, "seconds": jobs.seconds_of(step, todo, out),
-            "version": Records(out / "steps").read(step, "done").get("version"), "warnings": warnings_of(logs)}
+            "version": Records(out).read(step).get("version"), "warnings": warnings_of(logs)}
 
 
 def write_run(path, given, todo, out):

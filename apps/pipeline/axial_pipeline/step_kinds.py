@@ -18,7 +18,9 @@ class Kind:
     """A step. Users put files of their own beside those of a step, such as scene_map.qgz of QGIS. So the patterns of
     a step that removes files name each kind of file."""
     writes: list  # patterns of what it may write or remove in the output folder; a folder stands for all in it
-    needs: tuple  # what its job asks for at first: megabytes, megabytes an image, minutes, minutes an image
+    # What its job asks for at first: megabytes, megabytes an image, minutes, minutes an image. Its inputs do not exist
+    # yet when the job is planned, so its program cannot be asked.
+    needs: tuple
     program: str = ""  # gets the words of an option
     option: str = ""   # the name of this option, if it is not that of the step
     result: str = ""   # the first result of --until for which the step runs; it always runs if there is none

@@ -94,24 +94,39 @@ def digest(chain):
     return hashlib.sha256(json.dumps(chain).encode()).hexdigest()
 
 
+STATES = ("begun", "done")  # of records
+
+
+def record_file(name, state="done"):
+    """The record that a step or job is "done" or "begun", relative to the folder of the output files."""
+    return f"steps/{name}.{state}.json"
+
+
+def step_of(path):
+    """The name of the step or job to which the record `path` belongs, and its state."""
+    name, _, state = path.name.removesuffix(".json").rpartition(".")
+    return name, state
+
+
 class Records:
-    """Says for each step whether it was begun and done, and with the digest of which chain: the
-    commands and inputs of all steps up to this one."""
+    """Says for each step of a run in the folder `out` whether it was begun and done, and with the digest of
+    which chain: the commands and inputs of all steps up to this one."""
 
-    def __init__(self, folder):
-        self.folder = folder
+    def __init__(self, out):
+        self.out = out
 
-    def read(self, step, state):
-        return read_record(self.folder / f"{step.name}.{state}.json")
+    def read(self, step, state="done"):
+        return read_record(self.out / record_file(step.name, state))
 
     def write(self, step, state, record):
-        self.folder.mkdir(parents=True, exist_ok=True)
-        files.write(self.folder / f"{step.name}.{state}.json", json.dumps(record))
+        path = self.out / record_file(step.name, state)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        files.write(path, json.dumps(record))
 
     def forget(self, names):
         """Removes the records that the steps with these names are done."""
         for name in names:
-            files.clear(self.folder / f"{name}.done.json")
+            files.clear(self.out / record_file(name))
 
 
 def with_chains(todo):
@@ -128,7 +143,7 @@ def chain_to(name, todo):
 
 
 def is_done(step, chain, records):
-    return records.read(step, "done").get("chain") == digest(chain) and step.makes.exists()
+    return records.read(step).get("chain") == digest(chain) and step.makes.exists()
 
 
 def perform(step, chain, records, logs, limits=()):
@@ -161,11 +176,11 @@ def names_from(number, todo, order):
 def run_all(todo, out, order=()):
     """Runs the steps that are not done, with records in `out`/steps and logs in `out`/logs. Returns
     the time of every step in seconds, by the step's name. `order`: as for names_from()."""
-    records, seconds = Records(out / "steps"), {}
+    records, seconds = Records(out), {}
     for number, (step, chain) in enumerate(with_chains(todo)):
         headline = f"[{number + 1}/{len(todo)}] {step.name}"
         if is_done(step, chain, records):
-            seconds[step.name] = records.read(step, "done")["seconds"]
+            seconds[step.name] = records.read(step)["seconds"]
             print(f"{headline}: done before", flush=True)
             continue
         records.forget(names_from(number, todo, order))

@@ -47,7 +47,7 @@ def step(given, out):
 def are_there(given, out):
     """Whether a run has made the frames of these clips before."""
     one = step(given, out)
-    return is_done(one, [one.command, one.fingerprint()], Records(out / "steps"))
+    return is_done(one, [one.command, one.fingerprint()], Records(out))
 
 
 def rows(given):

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What all stages share: errors, events and progress, stopping, and the memory that a run may use.
+// What all stages share: errors, events and progress, stopping, and the memory and the threads that
+// a run may use.
 //
-// The caller of a stage gets the events of the stage through a Context, and may stop the stage. A
-// function that warns, reports results or progress, or works long takes a Context as its last
-// argument. Without a Context, it is silent and cannot be stopped.
+// The caller of a stage gets the events of the stage through a Context, may stop the stage, and
+// limits its memory and its threads. A function that warns, reports results or progress, works long
+// or needs much memory takes a Context as its last argument. Without a Context, it is silent,
+// cannot be stopped and has no limits.
 #pragma once
 
 #include <fmt/core.h>
@@ -12,7 +14,9 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <stop_token>
 #include <string>
@@ -68,12 +72,102 @@ class Stopped : public std::exception {
   const char* what() const noexcept override { return "stopped"; }
 };
 
+inline constexpr std::uint64_t kMegabyte = 1'000'000;  // the unit of options in megabytes [bytes]
+
+// The bytes of code and libraries, stacks and small blocks of a program.
+inline constexpr std::uint64_t kProgramBytes = 96 * kMegabyte;
+
+// The memory that work may use. The budget travels in the Context. Copies of a budget have a common
+// count of reservations. All functions may be called from several threads at the same time.
+class MemoryBudget {
+  struct State;
+
+ public:
+  // Bytes of a budget that are in use as long as this object exists.
+  class Reservation {
+   public:
+    Reservation() = default;  // of no bytes
+    Reservation(std::shared_ptr<State> state, std::uint64_t bytes);
+    Reservation(Reservation&& other) noexcept;
+    Reservation& operator=(Reservation&& other) noexcept;
+    ~Reservation();
+
+   private:
+    std::shared_ptr<State> state_;
+    std::uint64_t bytes_ = 0;
+  };
+
+  // Without a limit.
+  MemoryBudget() = default;
+
+  // The budget of a whole program: `megabytes` megabytes, or, for 0, 70 % of the memory that is now
+  // available or used by this process. What the process uses at the time of a call is in use, at
+  // least `program_bytes`, so that a program that has just begun decides like one that has loaded
+  // all of its code. `setting`: the name of `megabytes` in messages. Throws an Error that names the
+  // setting for 0 megabytes if the system does not report how much memory is available.
+  static MemoryBudget of_program(std::uint64_t megabytes, std::string setting = "max_memory",
+                                 std::uint64_t program_bytes = kProgramBytes);
+
+  // A budget of `bytes` bytes. Only reservations are in use, so that decisions do not depend on
+  // what the process uses.
+  static MemoryBudget of_bytes(std::uint64_t bytes, std::string setting = "max_memory");
+
+  // The budget of a stage that counts its own memory: of_bytes(left()) for the budget of a program;
+  // another budget itself.
+  MemoryBudget share() const;
+
+  // The same budget, with errors of require() that end with `advice`.
+  MemoryBudget with_advice(std::string advice) const;
+
+  bool is_limited() const { return state_ != nullptr; }
+
+  // The next four are for a budget that has a limit.
+  const std::string& setting() const;
+  std::uint64_t megabytes() const;      // of_program(): as given, also 0
+  std::uint64_t program_bytes() const;  // of_bytes(): 0
+  std::uint64_t limit() const;          // [bytes]
+
+  // The bytes between the use and the limit. 0 if the use is at the limit; the largest number if
+  // there is no limit.
+  std::uint64_t left() const;
+
+  // Throws an Error if `bytes` are more than left(). The message is one line. It begins with the
+  // setting. For the budget of a program, it tells how many megabytes the program needs for `work`;
+  // otherwise, how many more megabytes `work` needs.
+  void require(std::uint64_t bytes, const std::string& work) const;
+
+  // How many items of `each` bytes, at least 1 and at most `most`, can be in memory at the same
+  // time. Throws the Error of require() if there is no room for one.
+  std::size_t items(std::uint64_t each, std::size_t most, const std::string& work) const;
+
+  // Takes `bytes` of what is left, even if less is left.
+  [[nodiscard]] Reservation reserve(std::uint64_t bytes) const;
+  // The same after require().
+  [[nodiscard]] Reservation reserve(std::uint64_t bytes, const std::string& work) const;
+
+ private:
+  std::shared_ptr<State> state_;  // null: no limit
+  std::string advice_;
+};
+
+class ThreadLimit;  // of the library
+
+// What the work may use.
+struct Limits {
+  MemoryBudget memory = {};
+  // The number of threads of all parallel loops of the process while the Context exists; 0: as
+  // many as cores. Empty: the Context does not limit them.
+  std::optional<unsigned> threads = {};
+};
+
 class Context {
  public:
   Context() = default;
   // `sink` gets all events, from one thread at a time. It may be empty. After a request to stop by
   // the source of `stop`, check_stop() and the sinks of stage() throw Stopped.
-  explicit Context(EventSink sink, std::stop_token stop = {});
+  explicit Context(EventSink sink, std::stop_token stop = {}, const Limits& limits = {});
+  // For a part of the work of `whole`, which must exist as long as this Context.
+  Context(const Context& whole, MemoryBudget memory);
 
   // Each sends a line: `format` with `args` in place of its "{}" (fmt's syntax).
   template <class... Args>
@@ -97,6 +191,8 @@ class Context {
   // sink.
   ProgressSink stage(const std::string& title) const;
 
+  const MemoryBudget& memory() const { return memory_; }
+
   const std::stop_token& stop_token() const { return stop_; }
   bool stop_requested() const { return stop_.stop_requested(); }
   // Throws Stopped after a request to stop.
@@ -108,27 +204,9 @@ class Context {
 
   EventSink sink_;
   std::stop_token stop_;
+  MemoryBudget memory_;
+  std::shared_ptr<const ThreadLimit> threads_;
   mutable std::mutex mutex_;
-};
-
-inline constexpr std::uint64_t kMegabyte = 1'000'000;  // the unit of options in megabytes [bytes]
-
-// The memory that a program may use, to check before each piece of work.
-struct MemoryAllowance {
-  // The limit. 0: 70 % of the memory that is available or used by this process, at the time of a
-  // call.
-  std::uint64_t megabytes = 0;
-  std::string setting;              // the name of `megabytes` in messages
-  std::uint64_t program_bytes = 0;  // of code and libraries, stacks and small blocks [bytes]
-
-  // Throws an Error if the program would exceed the limit with `bytes` more bytes than it uses now.
-  // The use is resident_memory(), but at least program_bytes, so that a program that has just begun
-  // decides like one that has loaded all of its code. The message is one line. It begins with
-  // `setting` and tells how many megabytes the program needs for `work`.
-  void require(std::uint64_t bytes, const std::string& work) const;
-
-  // The bytes between the use, as in require(), and the limit. 0 if the use is at the limit.
-  std::uint64_t left() const;
 };
 
 }  // namespace axial

@@ -158,8 +158,6 @@ struct CompareOptions {
   SurveyPhotos photos = {};
   // Whether surveys are compared although they show different places.
   bool allow_other_place = false;
-  // The memory that may be used. The need is checked before the maps are made.
-  MemoryAllowance memory = {};
   // For the fields `pixel`, "ground_sample_distance", `photos.least`, "min_views", and
   // `allow_other_place`.
   SettingNames name_of = own_name;

@@ -128,16 +128,15 @@ using Job = std::variant<WholeRun, StageJob, TileJob, PlanJob, NeighbourListsJob
 
 // The options of a run. Paths are absolute.
 struct Options {
-  // The scene, its photographs and masks, and the memory of the run. The scene and the working
-  // folder, which also gets the depth maps, are required. All calibrated images are used. Errors
-  // and warnings name the options by survey.files.name_of.
+  // The scene, its photographs and masks. The scene and the working folder, which also gets the
+  // depth maps, are required. All calibrated images are used. Errors and warnings name the options
+  // by survey.files.name_of.
   survey::Options survey;
   ViewOptions views;
   MatchOptions matching;
   FusionOptions fusion;
   OutputOptions output;
   Job job = WholeRun();
-  unsigned max_threads = 0;  // largest number of threads; 0: as many as cores
 
   std::string name_of(std::string_view option) const { return survey.files.name_of(option); }
 
@@ -211,7 +210,8 @@ struct Report {
 //   input and options are used again. The result has the same bytes for any
 //   number of threads and any max_memory.
 // * Inputs are never changed. An output file appears under its name only when it is complete.
-// * Memory stays below max_memory, and does not grow with the number of images, with three
+// * Memory stays below the limit of Context::memory() (max_memory; if there is none, 70 % of the
+//   free memory), and does not grow with the number of images, with three
 //   exceptions: the scene, one bit per pixel in fusion (of the views of a tile), and a cloud whose
 //   colours or normals are estimated from the whole cloud (estimate_colors or estimate_normals is
 //   1). Such a cloud is kept in memory in addition to max_memory.

@@ -117,8 +117,6 @@ struct WriteOptions {
   int samples = 0;                // along each side of a pixel, odd; 0: samples_per_pixel()
   double contour_interval = 0;    // height between contour lines [m]
   int longest_side = 2048;        // of the picture, without its strip [px]
-  // The memory that may be used. The need is checked before the first block is made.
-  MemoryAllowance memory = {};
   // Errors name the field contour_interval by name_of("contour_interval").
   SettingNames name_of = own_name;
 };

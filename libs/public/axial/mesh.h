@@ -83,11 +83,10 @@ struct ReconstructOptions {
   // `clean.spurious` has a second effect: faces are left out whose longest edge is longer than a
   // third of this many median longest edges, where no camera has seen a surface.
   CleanOptions clean;
-  bool only_region = false;     // use only points in Scene::region, if there is one
-  bool crop_to_region = true;   // remove faces with a corner outside of Scene::region, if any
-  std::uint64_t max_bytes = 0;  // limit of the memory [bytes]; 0: no limit
-  // Errors name max_bytes by name_of("max_memory"), merge.min_distance by
-  // name_of("merge.min_distance"), and the number of tiles by name_of("tiles").
+  bool only_region = false;    // use only points in Scene::region, if there is one
+  bool crop_to_region = true;  // remove faces with a corner outside of Scene::region, if any
+  // Errors name merge.min_distance by name_of("merge.min_distance"), and the number of tiles by
+  // name_of("tiles").
   SettingNames name_of = own_name;
 };
 
@@ -101,7 +100,7 @@ struct ReconstructOptions {
 // * a view is not a calibrated image of the scene,
 // * a position is not finite, or a weight is not from 0 to 1e6,
 // * fewer than four points remain after merging, or all points lie in a plane,
-// * the memory needed exceeds max_bytes,
+// * the memory needed exceeds the limit of Context::memory(),
 // * no surface is found, or clean() throws.
 Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions& options = {},
                  const Context& context = {});

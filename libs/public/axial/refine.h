@@ -76,15 +76,9 @@ struct Options {
   // [px^2] in at least two views that see all three corners. The parts of a face are tested in the
   // same way, in at most six rounds of splitting. 0: no face is split.
   double max_face_area = 32;
-  // The memory [bytes] that refine() may use besides the mesh and the images of `pictures`. The
-  // estimate of the need is compared with the limit. The limit affects the time,
-  // but not the result. 0: no limit.
-  std::uint64_t max_bytes = 0;
   // The memory [bytes] for each vertex that the caller needs afterwards for the refined mesh, when
   // the memory of refine() is free again. The need is checked before the first step.
   std::uint64_t bytes_afterwards = 0;
-  // Errors name the field max_bytes by name_of("max_memory").
-  SettingNames name_of = own_name;
 };
 
 // The result of refine(), besides the mesh.
@@ -125,9 +119,10 @@ using Checkpoint = std::function<void(const State& state)>;
 // "Refined" never falls: it is the part of the expected work of this call, in which a resolution
 // counts in proportion to its pixels.
 //
-// Throws an Error if check_mesh() refuses the mesh, for example a mesh without
-// faces. Throws an Error if no two views see the same surface, or if max_bytes is not enough. After
-// the last two errors, faces of `state.mesh` may have been split.
+// Throws an Error if check_mesh() refuses the mesh, for example a mesh without faces. Throws an
+// Error if no two views see the same surface, or if the limit of Context::memory() is not enough
+// for the memory besides the mesh and the images of `pictures`. The limit affects the time, but not
+// the result. After the last two errors, faces of `state.mesh` may have been split.
 void refine(State& state, std::span<const PosedCamera> views, const Pictures& pictures,
             const Options& options = {}, const Checkpoint& checkpoint = {},
             const Context& context = {});

@@ -54,10 +54,7 @@ struct Options {
   // Whether photographs are compared with each other, to report those that do not belong to the
   // scene.
   bool compares_photographs = false;
-  // The memory of the whole run. A program states here the bytes of the program itself.
-  MemoryAllowance memory{0, "max_memory", 96 * kMegabyte};
-  bool has_memory_limit = true;  // false: `memory` is not used
-  bool has_masks = true;         // false: the program does not use masks
+  bool has_masks = true;  // false: the program does not use masks
 };
 
 }  // namespace axial::survey

@@ -119,9 +119,6 @@ struct Options {
   PackingOptions packing;
   double sharpness_weight = 0;    // amount of an unsharp mask; 0: none
   Rgb empty_color{255, 127, 39};  // R G B; for faces that no view sees, and between the charts
-  // The memory [bytes] that texture_mesh() may use besides `mesh`. The need is estimated by
-  // functions of the stages' headers. This limit affects the time, but not the result. 0: no limit.
-  std::uint64_t max_bytes = 0;
   // Takes the mesh after splitting and the views of its faces, as find_face_views() returns them,
   // before views are removed. Called only if `tiles` is 1. An empty function: nothing is called.
   std::function<void(const Mesh&, const FaceViews&)> take_views;
@@ -130,7 +127,7 @@ struct Options {
   // The memory [bytes] that the caller needs afterwards to write the result, besides the result. An
   // empty function: none.
   std::function<std::uint64_t(const ResultSize&)> bytes_to_write;
-  // Errors name the fields max_bytes and `tiles` by name_of("max_memory") and name_of("tiles").
+  // Errors name the field `tiles` by name_of("tiles").
   SettingNames name_of = own_name;
 };
 
@@ -150,9 +147,12 @@ struct Report {
 // face. Vertices keep their indices, and the vertices that splitting adds follow. `report`, if
 // given, is filled. Options::tiles has no effect.
 //
-// Throws an Error if check_mesh() refuses the mesh, for example a mesh without
-// faces. Throws an Error if no view sees any face, if pack() refuses the options, or if
-// max_bytes does not suffice for a stage. Exceptions of `images` are passed on.
+// Context::memory() is for the memory besides `mesh`. The limit affects the time, but not the
+// result.
+//
+// Throws an Error if check_mesh() refuses the mesh, for example a mesh without faces. Throws an
+// Error if no view sees any face, if pack() refuses the options, or if the memory does not suffice
+// for a stage. Exceptions of `images` are passed on.
 TexturedMesh texture_mesh(Mesh mesh, std::span<const View> views, const ImageSource& images,
                           const Options& options = {}, Report* report = nullptr,
                           const Context& context = {});

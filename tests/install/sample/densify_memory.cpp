@@ -96,9 +96,11 @@ void run(int argc, char** argv, std::stop_source& source, Clock::time_point& ask
   const std::size_t most = argc > 1 ? static_cast<std::size_t>(std::atoi(argv[1])) : 0;
   if (argc > 2) options.fusion.tiles = static_cast<std::size_t>(std::atoi(argv[2]));
   if (argc > 3) options.survey.files.working_folder = std::filesystem::absolute(argv[3]);
-  options.max_threads = 2;  // on any computer, a stop leaves maps to be made
   std::size_t maps = 0;
   options.output.take_map = [&maps](std::size_t, axial::DepthMap) { ++maps; };
+  axial::Limits limits;
+  limits.memory = axial::MemoryBudget::of_program(1000);
+  limits.threads = 2;  // on any computer, a stop leaves maps to be made
   const axial::Context context(
       [&](const axial::Event& event) {
         if (event.kind == axial::Event::Kind::line)
@@ -108,7 +110,7 @@ void run(int argc, char** argv, std::stop_source& source, Clock::time_point& ask
         asked = Clock::now();
         source.request_stop();
       },
-      source.get_token());
+      source.get_token(), limits);
   const auto result = axial::densify::densify(simulated_survey(), options, context);
   double sum = 0;
   for (const Eigen::Vector3f& point : result.cloud.positions) sum += std::abs(point.z() - kGround);
