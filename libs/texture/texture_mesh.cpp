@@ -6,6 +6,7 @@
 #include "scene/check_mesh.h"
 #include "texture/face_labels.h"
 #include "texture/labels.h"
+#include "texture/split_faces.h"
 #include "texture/tile_painter.h"
 
 namespace axial::texture {
