@@ -78,8 +78,10 @@ class LittleMemory(Wall):
                 self.assertIn(ended.returncode, (0, 1, 127), said)  # 127: the loader failed
                 ends.append(ended.returncode)
                 if ended.returncode == 1:
-                    self.assertEqual(ended.stderr.count("\n"), 1, said)
-                    self.assertRegex(ended.stderr, reason, said)
+                    # GDAL loads GnuTLS, which prints this line of its own before the program begins.
+                    own = re.sub("^Error in GnuTLS initialization: .*\n", "", ended.stderr)
+                    self.assertEqual(own.count("\n"), 1, said)
+                    self.assertRegex(own, reason, said)
             self.assertIn(1, ends, command)
             self.assertEqual(ends[-1], 0, command)
 
