@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# cmake --install: programs, their man pages and documents (component "programs"); libraries, headers
-# (not those of private/) and the CMake package AxialMVS (component "development"). cpack -G DEB makes
+# cmake --install: programs, their man pages and documents (component "programs"); libraries, the public
+# headers (libs/public and refractive) and the CMake package AxialMVS (component "development"). cpack -G DEB makes
 # a package of the programs.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -37,21 +37,65 @@ if(AXIAL_HELP2MAN AND NOT AXIAL_SANITIZE)
   install(FILES ${pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT programs)
 endif()
 
-# Libraries.
+# Libraries. A component of the package is a library with a public header of its name. Other libraries are
+# installed if a component links them. AXIAL_PACKAGES_<component>: the packages that its link needs.
 set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/axialmvs)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/AxialMVS)
+
+# Adds the library and all that it links to `libraries`, and the packages of other targets to `packages`.
+set(package_of_SQLite SQLite3)
+set(package_of_Boost "Boost COMPONENTS program_options")
+set(package_of_Ceres "Ceres COMPONENTS SuiteSparse")
+set(package_of_SuiteSparse "${package_of_Ceres}")
+set(package_of_embree "embree 3")
+macro(axial_add_links_of library)
+  list(APPEND libraries ${library})
+  get_target_property(links axial_${library} INTERFACE_LINK_LIBRARIES)
+  foreach(link IN LISTS links)
+    string(REGEX REPLACE "^[$]<LINK_ONLY:(.*)>$" "\\1" link "${link}")
+    if(link MATCHES "^axial_(.*)$")
+      if(NOT CMAKE_MATCH_1 IN_LIST libraries)
+        axial_add_links_of(${CMAKE_MATCH_1})
+      endif()
+    elseif(link MATCHES "^opencv_(.*)$")
+      list(APPEND opencv ${CMAKE_MATCH_1})
+    elseif(link MATCHES "^([A-Za-z0-9_]+)(::|$)")
+      set(package ${CMAKE_MATCH_1})
+      if(package_of_${package})
+        set(package "${package_of_${package}}")
+      endif()
+      list(APPEND packages "${package}")
+    endif()
+  endforeach()
+endmacro()
+
 foreach(library IN LISTS AXIAL_LIBRARIES)
+  if(library STREQUAL "refractive" OR EXISTS ${PROJECT_SOURCE_DIR}/libs/public/axial/${library}.h)
+    set(libraries)
+    set(packages)
+    set(opencv)
+    axial_add_links_of(${library})
+    if(opencv)
+      list(REMOVE_DUPLICATES opencv)
+      list(JOIN opencv " " opencv)
+      list(APPEND packages "OpenCV COMPONENTS ${opencv}")
+    endif()
+    list(REMOVE_DUPLICATES packages)
+    string(APPEND component_packages "set(AxialMVS_${library}_packages \"${packages}\")\n")
+    list(APPEND components ${library})
+    list(APPEND installed ${libraries})
+  endif()
+endforeach()
+list(REMOVE_DUPLICATES installed)
+foreach(library IN LISTS installed)
   set_target_properties(axial_${library} PROPERTIES EXPORT_NAME ${library})
   target_include_directories(axial_${library} INTERFACE $<INSTALL_INTERFACE:${include_dir}>)
   install(TARGETS axial_${library} EXPORT AxialMVSTargets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
-  if(library STREQUAL "refractive")
-    set(headers refractive)
-  else()
-    set(headers libs/${library})
-  endif()
+endforeach()
+foreach(headers refractive libs/public/axial)
   install(DIRECTORY ${headers} DESTINATION ${include_dir} COMPONENT development
-    FILES_MATCHING PATTERN "*.h" PATTERN LICENSE PATTERN private EXCLUDE)
+    FILES_MATCHING PATTERN "*.h" PATTERN LICENSE)
 endforeach()
 install(EXPORT AxialMVSTargets NAMESPACE Axial:: DESTINATION ${package_dir} COMPONENT development)
 configure_package_config_file(cmake/AxialMVSConfig.cmake.in ${PROJECT_BINARY_DIR}/AxialMVSConfig.cmake

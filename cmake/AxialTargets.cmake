@@ -5,8 +5,10 @@
 
 add_library(axial_flags INTERFACE)
 target_compile_features(axial_flags INTERFACE cxx_std_20)
+target_include_directories(axial_flags INTERFACE ${PROJECT_SOURCE_DIR}/libs/public)
+target_link_libraries(axial_flags INTERFACE Eigen3::Eigen fmt::fmt opencv_core opencv_imgproc)
 target_compile_options(axial_flags INTERFACE
-  -Wall -Wextra -Wshadow -Wconversion -Werror
+  -Wall -Wextra -Wshadow -Wconversion $<$<BOOL:${AXIAL_WERROR}>:-Werror>
   # No fused multiply-add, so that results do not depend on what the optimiser would fuse; see "Same
   # input, same options" in CONTRIBUTING.md.
   -ffp-contract=off
@@ -107,13 +109,17 @@ endif()
 # add_axial_library(io SOURCES ply/ply_read.cpp [APART json.cpp] LINK scene opencv_core) adds libs/io
 # as the library axial_io. In LINK, the project's own libraries are written without the prefix
 # axial_. Headers in libs/io/private are for this library alone: they are included as
-# "private/ply/ply_header.h", which only its own files find.
-function(axial_link target)
+# "private/ply/ply_header.h", which only its own files find. `scope`: of links to other projects.
+function(axial_link target scope)
   foreach(item IN LISTS ARGN)
     if(TARGET axial_${item})
       target_link_libraries(${target} PUBLIC axial_${item})
-    elseif(TARGET ${item} OR item MATCHES "^opencv_")
+    elseif(item MATCHES "^(fmt::fmt|Eigen3::Eigen|opencv_core)$")  # public headers include their headers
       target_link_libraries(${target} PUBLIC ${item})
+    elseif(item MATCHES "^(nlohmann_json|nanoflann)::")  # headers alone: a user needs no package
+      target_link_libraries(${target} ${scope} $<BUILD_INTERFACE:${item}>)
+    elseif(TARGET ${item} OR item MATCHES "^opencv_")
+      target_link_libraries(${target} ${scope} ${item})
     else()
       message(FATAL_ERROR "${target} links '${item}', which is no target")
     endif()
@@ -131,7 +137,7 @@ function(add_axial_library name)
   target_compile_features(axial_${name} PUBLIC cxx_std_20)
   target_link_libraries(axial_${name} PUBLIC $<BUILD_INTERFACE:axial_flags>)
   target_precompile_headers(axial_${name} REUSE_FROM axial_parsed)
-  axial_link(axial_${name} ${ARG_LINK})
+  axial_link(axial_${name} PRIVATE ${ARG_LINK})
 endfunction()
 
 function(add_axial_app name)
@@ -141,7 +147,7 @@ function(add_axial_app name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/libs)
   target_link_libraries(${name} PRIVATE axial_flags axial_version)
   target_precompile_headers(${name} REUSE_FROM axial_parsed)
-  axial_link(${name} ${ARG_LINK})
+  axial_link(${name} PUBLIC ${ARG_LINK})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
 endfunction()
 
@@ -159,7 +165,7 @@ function(add_axial_test_support name)
   add_library(axial_${name} STATIC EXCLUDE_FROM_ALL ${ARG_SOURCES})
   axial_unity(axial_${name})
   axial_set_up_test(axial_${name})
-  axial_link(axial_${name} ${ARG_LINK})
+  axial_link(axial_${name} PUBLIC ${ARG_LINK})
 endfunction()
 
 function(axial_set_up_test target)
@@ -250,7 +256,7 @@ function(axial_add_test_program target)
   add_executable(${target} ${ARG_SOURCES})
   axial_set_up_test(${target})
   target_link_libraries(${target} PRIVATE rapidcheck GTest::gtest_main)
-  axial_link(${target} ${ARG_LINK})
+  axial_link(${target} PUBLIC ${ARG_LINK})
   add_dependencies(axial_tests ${target})
 endfunction()
 

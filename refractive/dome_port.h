@@ -39,6 +39,8 @@ struct DomePort {
   T n_glass = T(1);
   T n_water = T(1);
 
+  bool operator==(const DomePort&) const = default;
+
   template <class U>
   DomePort<U> cast() const {
     return {centre.template cast<U>(), static_cast<U>(inner_radius), static_cast<U>(thickness),

@@ -31,6 +31,8 @@ struct FlatPort {
   T n_glass = T(1);
   T n_water = T(1);
 
+  bool operator==(const FlatPort&) const = default;
+
   template <class U>
   FlatPort<U> cast() const {
     return {normal.template cast<U>(), static_cast<U>(distance), static_cast<U>(thickness),

@@ -24,7 +24,7 @@ bash apps/pipeline/install-deps.sh
 
 for preset in release sanitize; do
   echo "=== Building ($preset)"
-  cmake --preset "$preset" -DAXIAL_TESTS=ON -DAXIAL_EVERY_TEST=$every --log-level=WARNING
+  cmake --preset "$preset" -DAXIAL_TESTS=ON -DAXIAL_WERROR=ON -DAXIAL_EVERY_TEST=$every --log-level=WARNING
 done
 cmake --build --preset release
 cmake --build --preset sanitize --target axial_tests

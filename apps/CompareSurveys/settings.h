@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "axial/compare.h"
 #include "base/program.h"
-#include "compare/compare.h"
 
 namespace axial::apps {
 

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "densify/options.h"
+#include "axial/densify.h"
 
 namespace axial::apps {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string>
 
+#include "axial/densify.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "densify/densify.h"
 #include "options.h"
 #include "without_effect.h"
 

@@ -4,8 +4,8 @@
 // OpenMVS: 7) and --tower-mode (0; OpenMVS: 4).
 #pragma once
 
+#include "axial/densify.h"
 #include "base/program.h"
-#include "densify/options.h"
 
 namespace axial::apps {
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "axial/scene_images.h"
 #include "base/naming.h"
 #include "evaluate/alignment.h"
 #include "evaluate/point_uncertainty.h"
@@ -13,7 +14,6 @@
 #include "options.h"
 #include "scene/local_frame.h"
 #include "scene/point_cloud.h"
-#include "scene/textured_mesh.h"
 
 namespace axial::apps {
 

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "axial/map.h"
+#include "axial/texture.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -22,13 +24,12 @@
 #include "map/pixel_width.h"
 #include "map/stated_kind.h"
 #include "map/up_direction.h"
-#include "map/write_maps.h"
 #include "scene/check_mesh.h"
 #include "scene/marked_faces.h"
 #include "settings.h"
 #include "survey/photographs.h"
+#include "texture/face_views.h"
 #include "texture/photograph_source.h"
-#include "texture/texture_mesh.h"
 
 namespace axial::apps {
 namespace {

@@ -10,6 +10,7 @@
 #include "io/openmvs/scene_options.h"
 #include "map/up_direction.h"
 #include "settings.h"
+#include "survey/survey.h"
 
 namespace axial::apps {
 namespace {

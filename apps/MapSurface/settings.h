@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
+#include "axial/survey.h"
 #include "base/program.h"
 #include "map/height_error.h"
-#include "survey/options.h"
 
 namespace axial::apps {
 

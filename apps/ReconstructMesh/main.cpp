@@ -8,6 +8,7 @@
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
+#include "mesh/clean.h"
 #include "mesh/point_distances.h"
 #include "mesh/unseen.h"
 #include "options.h"

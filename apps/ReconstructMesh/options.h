@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <string>
 
+#include "axial/survey.h"
 #include "base/program.h"
 #include "base/tiling.h"
 #include "mesh/reconstruct.h"
-#include "survey/options.h"
 
 namespace axial::apps {
 

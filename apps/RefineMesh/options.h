@@ -5,10 +5,10 @@
 #include <string>
 #include <string_view>
 
+#include "axial/refine.h"
+#include "axial/survey.h"
 #include "base/program.h"
 #include "mesh/clean.h"
-#include "refine/refine.h"
-#include "survey/options.h"
 
 namespace axial::apps {
 

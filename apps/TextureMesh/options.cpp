@@ -12,6 +12,7 @@
 #include "io/openmvs/scene_files.h"
 #include "io/openmvs/scene_options.h"
 #include "settings.h"
+#include "survey/survey.h"
 
 namespace axial::apps {
 namespace {

@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <vector>
 
+#include "axial/survey.h"
+#include "axial/texture.h"
 #include "base/program.h"
 #include "io/textured/textured_mesh.h"
-#include "survey/options.h"
-#include "texture/texture_mesh.h"
 
 namespace axial::apps {
 

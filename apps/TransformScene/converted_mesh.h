@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "axial/scene_images.h"
 #include "scene/moved_scene.h"
-#include "scene/textured_mesh.h"
 
 namespace axial::apps {
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "axial/survey.h"
 #include "base/program.h"
-#include "survey/options.h"
 
 namespace axial::apps {
 

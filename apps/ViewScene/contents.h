@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
+#include "axial/scene_images.h"
 #include "base/context.h"
 #include "options.h"
 #include "scene/mesh.h"
 #include "scene/point_cloud.h"
-#include "scene/textured_mesh.h"
 #include "survey/survey.h"
 
 namespace axial::apps {

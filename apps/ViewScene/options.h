@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "axial/survey.h"
 #include "base/program.h"
 #include "depth_maps.h"
 #include "maps.h"
-#include "survey/options.h"
 
 namespace axial::apps {
 

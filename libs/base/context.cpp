@@ -6,12 +6,13 @@
 #include <utility>
 
 #include "base/message.h"
+#include "base/parallel.h"
 
 namespace axial {
 
 Context::Context(EventSink sink, std::stop_token stop, const Limits& limits)
     : sink_(std::move(sink)), stop_(std::move(stop)), memory_(limits.memory) {
-  if (limits.threads) threads_.emplace(*limits.threads);
+  if (limits.threads) threads_ = std::make_shared<const ThreadLimit>(*limits.threads);
 }
 
 Context::Context(const Context& whole, MemoryBudget memory)

@@ -4,17 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <stdexcept>
-#include <string>
+#include "axial/base.h"
 
 namespace axial {
-
-// An error that a user can cause. The message names, in this order and as far as they apply, the
-// file, the field and the value: "scene.mvs: images[3].poseID is 17, but the platform has 4 poses".
-class Error : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 // Does the work of fail() in error.cpp, so that the formatting is compiled in one place.
 [[noreturn]] void fail_formatted(fmt::string_view format, fmt::format_args arguments);

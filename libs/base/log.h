@@ -9,10 +9,9 @@
 #include <string>
 #include <string_view>
 
-namespace axial {
+#include "axial/base.h"
 
-// In ascending order.
-enum class LogLevel { trace, debug, info, warning };
+namespace axial {
 
 // Sets the lowest level that is written. At the start of the program and after start_log(), it is
 // `info`.

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/memory_budget.h"
-
 #include <algorithm>
 #include <atomic>
 #include <limits>
 #include <utility>
 
+#include "axial/base.h"
 #include "base/error.h"
 #include "base/memory.h"
 

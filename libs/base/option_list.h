@@ -18,7 +18,7 @@
 #include <variant>
 #include <vector>
 
-#include "base/memory_budget.h"
+#include "axial/base.h"
 
 namespace axial {
 

@@ -10,7 +10,6 @@
 
 #include "base/context.h"
 #include "base/option_list.h"
-#include "base/setting_names.h"
 
 namespace axial {
 

@@ -8,11 +8,9 @@
 #include <string>
 #include <utility>
 
-namespace axial {
+#include "axial/base.h"
 
-// Receives the progress of a stage: the number of items done and the number of all items. The stage
-// calls the sink from one thread at a time. A stage accepts an empty sink and then reports nothing.
-using ProgressSink = std::function<void(std::size_t done, std::size_t total)>;
+namespace axial {
 
 // Returns a sink that writes "<title> 3/10 (30%, 12s, 28s left)": the items done, the time since
 // this function was called, and an estimate of the time left. The estimate begins after 5 % of the

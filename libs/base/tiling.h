@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "axial/base.h"
 #include "base/context.h"
 #include "base/program.h"
-#include "base/setting_names.h"
 
 namespace axial {
 

@@ -4,13 +4,11 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
-#include <numbers>
 #include <opencv2/core.hpp>
-#include <optional>
 #include <span>
 #include <vector>
 
+#include "axial/cloud.h"
 #include "base/progress.h"
 #include "cloud/tiles.h"
 #include "scene/depth_map.h"
@@ -42,42 +40,6 @@ struct FusionProviders {
   // Returns the image in B G R at the depth map's size. If the function itself is empty, the cloud
   // has no colours.
   std::function<cv::Mat3b(std::size_t image)> load_color;
-};
-
-// A part of space to which fuse() is restricted (see fuse()).
-struct FusionPart {
-  Tile tile;   // the points whose positions lie in this box are the result
-  Tile reach;  // only pixels whose points lie in this box are processed; larger than `tile`
-  // One entry for each FusionView: false if its map has no point in `reach`. Such a view is not
-  // processed, and its map is loaded only as a neighbour. Empty: all views are processed. The cloud
-  // does not depend on entries that are true without need.
-  std::vector<bool> seen_by;
-};
-
-// Settings of fuse(), whose comment explains the tests.
-struct FuseOptions {
-  // The number of images that must agree on a point. The image whose pixel gives the point counts
-  // as one of them. A value above the number of views is reduced to the number of views. With a
-  // value below 2 the maps are merged without tests: every valid pixel becomes a point with one
-  // view.
-  std::size_t min_views = 3;
-  // Also accepts a point on which only two images agree, if no other image disagrees and the point
-  // lies in a piece of surface of both maps (see fuse()). Has no effect for min_views up to 2.
-  bool two_if_undisputed = true;
-  // Depths agree if their difference is below this fraction of the point's depth. Both depths are
-  // measured along the ray of the neighbour, the image that is compared.
-  double depth_threshold = 0.005;
-  double normal_threshold = 40.0 * std::numbers::pi / 180.0;  // largest angle that agrees [rad]
-  bool normals = true;                                        // fill PointCloud::normals
-  bool errors = false;             // fill PointCloud::errors and confidences (point_error.h)
-  std::optional<FusionPart> part;  // empty: all of space
-
-  // Limits of memory (see bytes_needed()). The cloud does not depend on them.
-  // max_maps: the number of maps in memory at the same time. A view and its neighbours are always
-  // in memory together, even if they are more than max_maps.
-  // max_loads: the number of simultaneous calls of the providers. 0 counts as 1.
-  std::size_t max_maps = std::numeric_limits<std::size_t>::max();
-  std::size_t max_loads = 1;
 };
 
 // Appends the points of `portion` to `cloud`. Preconditions: both have the same attributes, and the

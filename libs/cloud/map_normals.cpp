@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "cloud/fuse.h"
+#include "scene/camera_model.h"
 
 namespace axial::cloud {
 namespace {

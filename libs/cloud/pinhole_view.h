@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
+#include "axial/scene.h"
 #include "scene/camera_model.h"
-#include "scene/pose.h"
 
 namespace axial::cloud {
 

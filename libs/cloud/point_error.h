@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "axial/scene.h"
 #include "cloud/fusion_map.h"
 #include "scene/camera_model.h"
-#include "scene/pose.h"
 
 namespace axial::cloud {
 

@@ -4,31 +4,15 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <vector>
 
+#include "axial/cloud.h"
 #include "base/order_statistics.h"
 #include "scene/depth_map.h"
 #include "scene/scene.h"
 
 namespace axial::cloud {
-
-// A half-open box: the points x [world] with low <= rotation * x < high in each component. The
-// default is all of space.
-struct Tile {
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // rows: the box axes in the world
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(-kInfinity);
-  Eigen::Vector3d high = Eigen::Vector3d::Constant(kInfinity);
-
-  // False for NaN.
-  bool contains(const Eigen::Vector3d& x) const {
-    const Eigen::Vector3d along = rotation * x;
-    return (along.array() >= low.array()).all() && (along.array() < high.array()).all();
-  }
-};
 
 // The tile with each side moved outwards by `margin` [world units, 0 or more].
 Tile grown(const Tile& tile, double margin);

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "scene/camera_model.h"
+
 namespace axial::cloud {
 namespace {
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cloud/fusion_map.h"
+#include "scene/camera_model.h"
 
 namespace axial::cloud {
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "base/error.h"
+#include "scene/camera_model.h"
 
 namespace axial::cloud {
 namespace {

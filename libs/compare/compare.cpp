@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "compare/compare.h"
+#include "axial/compare.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,7 +11,11 @@
 #include "base/naming.h"
 #include "base/order_statistics.h"
 #include "base/parallel.h"
+#include "compare/changes.h"
 #include "compare/height_map.h"
+#include "compare/noise.h"
+#include "compare/registration.h"
+#include "compare/same_place.h"
 #include "compare/visibility.h"
 #include "geometry/faces.h"
 #include "geometry/surface.h"

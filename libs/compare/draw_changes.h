@@ -3,7 +3,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "compare/compare.h"
+#include "axial/compare.h"
 
 namespace axial::compare {
 

@@ -4,28 +4,9 @@
 
 #include <opencv2/core.hpp>
 
+#include "axial/compare.h"
+
 namespace axial::compare {
-
-// The noise of the differences of heights. The standard deviation at a pixel is that of its cell
-// times the steepness of the pixel, because a surface that is displaced along its normal changes
-// its height by the displacement times the steepness.
-struct Noise {
-  int cell = 32;                   // side of a cell [px]
-  cv::Mat1f cells;                 // standard deviation on level ground [m]: of each cell
-  double typical = 0;              // the same for all of the map [m]
-  double lowest = 0, highest = 0;  // of `cells` [m]
-  // The standard deviation on level ground that the differences between pixels a few pixels apart
-  // show [m]. Noise that is similar at neighbouring pixels has less of it than `typical`, and
-  // changed ground much less.
-  double local = 0;
-  bool is_given = false;  // by the user, for all of the map
-  // The variance of the mean of many pixels, times their number, divided by the variance of one
-  // pixel. 1 if the pixels are independent.
-  double correlation = 1;
-
-  // The standard deviation of a pixel on level ground [m].
-  float at(int y, int x) const { return cells(y / cell, x / cell); }
-};
 
 // Estimates the noise. `difference`: later minus earlier height [m]; NaN where they are not
 // compared. `steepness`: sqrt(1 + slope^2) of each of these pixels. `least`: the smallest standard

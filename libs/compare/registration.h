@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "axial/compare.h"
 #include "base/progress.h"
 #include "map/frame.h"
 #include "scene/decompositions.h"
@@ -11,45 +12,11 @@
 
 namespace axial::compare {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-
-// The map x -> rotation * (x - centre) + centre + translation, in map coordinates [m].
-struct RigidMotion {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-};
-
 // The frame that gives a point of the mesh the map coordinates motion(frame.to_map(point)).
 map::MapFrame moved(const map::MapFrame& frame, const RigidMotion& motion);
 
 // The motion in world coordinates, for a map with the axes `axes` (MapFrame::axes).
 Similarity in_world(const RigidMotion& motion, const Eigen::Matrix3d& axes);
-
-struct RegistrationOptions {
-  int max_iterations = 60;  // largest number of steps
-  int longest_side = 300;   // largest number of samples along the longer side of the map
-  // Samples are left out whose residual is farther from the median than this number of robust
-  // standard deviations, and so are the samples beside them.
-  double outlier = 3;
-};
-
-struct Registration {
-  RigidMotion motion;  // of the later survey
-  // Covariance of a small further motion about the centre: rotation vector [rad], translation [m].
-  // Zero along directions that the surface does not determine, and without registration.
-  Matrix6d covariance = Matrix6d::Zero();
-  int determined = 0;         // number of directions that the surface determines, at most 6
-  int iterations = 0;         // number of steps
-  bool converged = true;      // false: the iteration ended only because of `max_iterations`
-  double share_used = 1;      // share of the samples with both surfaces that are not left out
-  double residual_sigma = 0;  // robust standard deviation of the residuals [m]
-
-  // The variance [m^2] of the height of the later survey at the point `place` [map], where the
-  // surface has the slope `slope`, because of the uncertainty of the motion.
-  double height_variance(const Eigen::Vector3d& place, const Eigen::Vector2d& slope) const;
-};
 
 // The row of derivatives of the height at a fixed place of the map by a motion of the surface
 // (rotation vector, translation). `offset`: the place minus the centre of the motion.

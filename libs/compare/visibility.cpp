@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "geometry/posed_camera.h"
 #include "geometry/surface.h"
 #include "scene/any_camera.h"
 

@@ -9,6 +9,7 @@
 
 #include "base/atomic_file.h"
 #include "compare/draw_changes.h"
+#include "compare/registration.h"
 #include "io/bytes/json.h"
 #include "io/images/image.h"
 #include "map/geotiff.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "compare/compare.h"
+#include "axial/compare.h"
 #include "scene/local_frame.h"
 
 namespace axial::compare {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "densify/densify.h"
+#include "axial/densify.h"
 
 #include <set>
 
@@ -209,12 +209,23 @@ struct JobRun {
     const Project& project = run.project;
     survey::ImageStore images = run.images();
     run.prepare_maps(images);
+    pass_maps(run, images);
     if (options.fusion.fuse)
       return write_cloud({project, run.existing, run.plan, images, context}, options.fusion,
                          options.output);
     io::write_cloud_ply(ply, cloud_of(project.scene), true,
                         {project.frame, options.output.double_precision});
     return project.scene.points.size();
+  }
+
+  void pass_maps(const MapRun& run, survey::ImageStore& images) const {
+    if (!options.output.take_map) return;
+    for (const std::size_t image : run.project.references) {
+      const cv::Mat1b mask = run.existing.are_final ? images.mask(image) : cv::Mat1b();
+      DepthMap map = read_final_map(run.project, run.existing, image, mask);
+      map.image_path = run.project.scene.images[image].path;
+      options.output.take_map(image, std::move(map));
+    }
   }
 
   void write_scene(const Project& project) const {

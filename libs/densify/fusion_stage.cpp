@@ -104,13 +104,6 @@ void report_counts(const fs::path& file, const CloudCounts& counts, const Contex
   io::write_json(file, report);
 }
 
-void add_plane(Fingerprint& print, const cv::Mat& plane) {
-  print.add(static_cast<std::uint64_t>(plane.rows)).add(static_cast<std::uint64_t>(plane.cols));
-  const std::size_t bytes = static_cast<std::size_t>(plane.cols) * plane.elemSize();
-  for (int y = 0; y < plane.rows; ++y)
-    print.add({reinterpret_cast<const char*>(plane.ptr(y)), bytes});
-}
-
 void add_box(Fingerprint& print, const cloud::Tile& box) {
   for (const double value : box.rotation.reshaped()) print.add(value);
   for (const double value : box.low) print.add(value);
@@ -182,7 +175,7 @@ class TileRun {
       Fingerprint print;
       for (const cv::Mat& plane :
            {cv::Mat(map.depth), cv::Mat(map.normal), cv::Mat(map.confidence)})
-        add_plane(print, plane);
+        survey::add_pixels(print, plane);
       seen[view] = cloud::boxes_seen(map, reaches);
       contents_[view] = print.hex();
       counter.add();

@@ -8,6 +8,7 @@
 #include "densify/memory_plan.h"
 #include "densify/neighbour_lists.h"
 #include "io/openmvs/point_source.h"
+#include "scene/region.h"
 
 namespace axial::densify {
 namespace {

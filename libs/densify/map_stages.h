@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "axial/densify.h"
 #include "base/context.h"
 #include "base/shared_cache.h"
-#include "densify/options.h"
 #include "io/openmvs/dmap.h"
 #include "scene/depth_map.h"
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "densify/options.h"
+#include "axial/densify.h"
 #include "io/cameras/lenses.h"
 #include "scene/view_selection.h"
 #include "survey/fingerprint.h"

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/order_statistics.h"
+#include "scene/camera_model.h"
 
 namespace axial::depth {
 namespace {

@@ -9,24 +9,15 @@
 #include <cstdint>
 #include <span>
 
+#include "axial/depth.h"
 #include "scene/depth_map.h"
 
 namespace axial::depth {
-
-struct SpeckleOptions {
-  float max_difference = 0.007f;  // relative depth step below which neighbours are connected
-  int min_pixels = 100;           // segments with fewer pixels are cleared
-};
 
 // Clears the pixels of small segments. A segment is a connected set of valid pixels. Two pixels
 // that share an edge are connected if their depths differ by less than max_difference, relative to
 // the smaller depth.
 DepthMap remove_speckles(const DepthMap& map, const SpeckleOptions& options = {});
-
-struct GapOptions {
-  int max_gap = 7;                // longest gap that is filled [px]
-  float max_difference = 0.025f;  // limit of the depth step over the gap, see fill_gaps()
-};
 
 // Fills gaps, first along rows, then along columns. A gap is a run of at most max_gap pixels that
 // are not valid, between two valid pixels (the ends). The depths of the ends differ by less than

@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "axial/depth.h"
 #include "depth/geometric_check.h"
-#include "depth/options.h"
 #include "depth/plane_map.h"
 #include "depth/ray_caster.h"
 #include "depth/reference_pixel.h"

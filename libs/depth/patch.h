@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 
-#include "depth/options.h"
+#include "axial/depth.h"
 #include "depth/reference_patch.h"
 
 namespace axial::depth {

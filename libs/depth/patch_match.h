@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 #include <span>
 
-#include "depth/options.h"
+#include "axial/depth.h"
 #include "scene/camera_list.h"
 #include "scene/depth_map.h"
 

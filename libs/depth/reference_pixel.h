@@ -6,7 +6,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "depth/options.h"
+#include "axial/depth.h"
 #include "depth/patch.h"
 #include "refractive/axial_ray.h"
 

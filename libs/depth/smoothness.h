@@ -5,20 +5,12 @@
 #pragma once
 
 #include <array>
-#include <numbers>
 #include <span>
 
+#include "axial/depth.h"
 #include "refractive/axial_ray.h"
 
 namespace axial::depth {
-
-struct SmoothnessOptions {
-  float depth_sigma = 0.02f;  // standard deviation of d_v / |X|
-  float depth_bonus = 0.07f;  // largest reduction of the factor by d_v of one neighbour
-  // Standard deviation of the angle between the normals of hypothesis and neighbour [rad].
-  float normal_sigma = 13 * std::numbers::pi_v<float> / 180;
-  float normal_bonus = 0.0672f;  // largest reduction of the factor by one neighbour's normal
-};
 
 // The surface at a neighbouring pixel: a point [m] and a unit normal in the reference camera's
 // frame.

@@ -4,13 +4,13 @@
 
 #include <Eigen/Core>
 
+#include "axial/scene.h"
 #include "depth/patch.h"
 #include "depth/plane_map.h"
 #include "depth/zncc.h"
 #include "refractive/affine_warp.h"
 #include "refractive/axial_ray.h"
 #include "refractive/virtual_camera.h"
-#include "scene/pose.h"
 
 namespace axial::depth {
 

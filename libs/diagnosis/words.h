@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/setting_names.h"
+#include "axial/base.h"
 #include "diagnosis/port_check.h"
 #include "diagnosis/port_kind.h"
 #include "diagnosis/refined_check.h"

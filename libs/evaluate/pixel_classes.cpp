@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/order_statistics.h"
+#include "scene/camera_model.h"
 
 namespace axial::evaluate {
 namespace {

@@ -8,9 +8,9 @@
 #include <functional>
 #include <opencv2/core.hpp>
 
+#include "axial/scene_images.h"
 #include "evaluate/views.h"
 #include "geometry/surface.h"
-#include "scene/textured_mesh.h"
 
 namespace axial::evaluate {
 

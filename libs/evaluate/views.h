@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "axial/scene.h"
 #include "geometry/posed_camera.h"
 #include "geometry/surface.h"
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
 #include "scene/camera_model.h"
-#include "scene/pose.h"
 
 namespace axial::evaluate {
 

@@ -6,18 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "scene/camera_model.h"
-#include "scene/pose.h"
-#include "scene/scene.h"
+#include "axial/geometry.h"
 
 namespace axial::geometry {
-
-// The camera of a photograph, at the resolution at which the photograph is used, with its pose in
-// the frame of the mesh or of the scene.
-struct PosedCamera {
-  CameraModel camera;
-  Pose pose;
-};
 
 // True if the pixel is at least `border` pixels inside the centres of the outermost pixels. -0.5:
 // the rectangle of the image with the whole area of these pixels.

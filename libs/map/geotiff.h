@@ -23,7 +23,6 @@ enum class MapKind {
   classes   // one band of 8 bits, numbers of classes; kNoClass: none
 };
 
-inline constexpr float kNoHeight = -9999;
 inline constexpr std::uint16_t kNoCount = 65535;
 inline constexpr std::uint8_t kNoClass = 255;
 

@@ -13,21 +13,11 @@
 #include <opencv2/core.hpp>
 #include <span>
 
+#include "axial/map.h"
 #include "map/frame.h"
 #include "map/surface_block.h"
-#include "scene/textured_mesh.h"
 
 namespace axial::map {
-
-// What a map shows. The object refers to data of the caller.
-struct MapContent {
-  const TexturedMesh& mesh;              // without textures: the map has no colours
-  std::span<const std::uint16_t> views;  // for each face the number of views that see it, or empty
-  // For each face the expected error of its height [m], kNoHeight: unknown. Or empty.
-  std::span<const float> errors;
-  MapFrame frame;
-  MapGrid grid;
-};
 
 // Throws an Error unless uv and texture_of have one entry for each face if there are textures, each
 // texture_of names a texture with pixels, all texture coordinates are finite, and `views` and

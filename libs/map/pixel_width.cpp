@@ -11,6 +11,7 @@
 #include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "geometry/faces.h"
+#include "geometry/posed_camera.h"
 #include "scene/any_camera.h"
 
 namespace axial::map {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "base/setting_names.h"
+#include "axial/base.h"
 
 namespace axial::map {
 

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "map/write_maps.h"
-
 #include <algorithm>
 #include <limits>
 #include <memory>
 #include <mutex>
 
+#include "axial/map.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "io/images/image.h"
 #include "map/contours.h"
 #include "map/geotiff.h"
+#include "map/map_block.h"
 #include "map/overview.h"
 #include "map/stated_kind.h"
+#include "map/surface_block.h"
 
 namespace axial::map {
 namespace {

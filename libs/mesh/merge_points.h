@@ -7,19 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "axial/mesh.h"
 #include "mesh/view_rays.h"
-#include "scene/point_cloud.h"
 
 namespace axial::mesh {
-
-// Options of merge_points().
-struct MergeOptions {
-  // A point p absorbs another point q only if their images are at most this far apart [px] in every
-  // view of p (see merge_points()). 0: no points are merged.
-  double min_distance = 2.5;
-  // If there are more merged points than this, they are counted but not kept. 0: no limit.
-  std::size_t most_points = 0;
-};
 
 // The result of merge_points(). Each point stands for one or several points of a cloud. The views
 // of point i have the indices [view_begin[i], view_begin[i + 1]).

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "axial/mesh.h"
 #include "base/context.h"
 #include "mesh/merge_points.h"
 #include "mesh/ray_walk.h"
@@ -29,14 +30,6 @@ struct Votes {
   // [cell][i]: the cost of a surface in the facet opposite of corner i, if `cell` is free and the
   // tetrahedron behind the facet is occupied.
   std::vector<std::array<std::int32_t, 4>> facets;
-};
-
-// Options of cast_votes().
-struct VoteOptions {
-  bool constant_weight = true;  // the weight of every view is 1; false: MergedPoints::view_weights
-  bool weak_support = false;    // cast the votes of weak_support.h in addition
-  double thickness_factor = 1;  // expected error of a point, in units of 2.5 pixel widths
-  double quality_factor = 1;    // factor of shape_cost() in the cost of a facet; 0: none
 };
 
 // The expected error [m] of the merged point number i along its rays: `options.thickness_factor`

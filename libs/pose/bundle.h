@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "axial/scene.h"
 #include "pose/housing_change.h"
-#include "scene/pose.h"
 
 namespace axial::pose {
 

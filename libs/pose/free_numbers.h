@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "axial/base.h"
 #include "base/option_list.h"
-#include "base/setting_names.h"
 #include "pose/adjust.h"
 #include "pose/housing_numbers.h"
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <vector>
 
+#include "axial/scene.h"
 #include "refractive/axial_ray.h"
-#include "scene/pose.h"
 
 namespace axial::pose {
 

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "axial/refine.h"
 #include "refine/raster.h"
-#include "refine/refine.h"
 #include "refine/visibility.h"
 
 namespace axial::refine {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "refine/refine.h"
+#include "axial/refine.h"
 
 namespace axial::refine {
 

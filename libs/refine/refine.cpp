@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "refine/refine.h"
+#include "axial/refine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/order_statistics.h"
+#include "geometry/posed_camera.h"
 #include "refine/anchor.h"
 #include "refine/choose_pairs.h"
 #include "refine/data_term.h"

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "axial/refine.h"
 #include "base/shared_cache.h"
 #include "refine/raster.h"
-#include "refine/refine.h"
 #include "refine/visibility.h"
 
 namespace axial::refine {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "axial/refine.h"
 #include "base/context.h"
-#include "refine/refine.h"
 
 namespace axial::refine {
 

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "base/parallel.h"
+#include "scene/camera_model.h"
 
 namespace axial::refine {
 

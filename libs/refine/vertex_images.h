@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "refine/refine.h"
+#include "axial/refine.h"
 
 namespace axial::refine {
 

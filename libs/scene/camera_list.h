@@ -6,17 +6,12 @@
 #include <variant>
 #include <vector>
 
+#include "axial/scene_options.h"
 #include "refractive/line_search.h"
 #include "scene/any_camera.h"
 #include "scene/camera_model.h"
 
 namespace axial {
-
-// How points are projected into a camera behind a port.
-enum class ProjectionMethod {
-  exact,
-  line_search  // the paper's Algorithm 1, for comparison
-};
 
 template <class T>
 using CameraList = std::variant<

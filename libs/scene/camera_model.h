@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The camera of one image as data, and the construction of a camera object from these data. Only
-// this header and camera_list.h list the kinds of cameras.
+// The construction of a camera object from the data of a camera. Only this header and camera_list.h
+// list the kinds of cameras.
 #pragma once
 
 #include <optional>
 #include <variant>
 
+#include "axial/scene.h"
 #include "refractive/dome_port_camera.h"
 #include "refractive/flat_port_camera.h"
 #include "refractive/lens_camera.h"
@@ -13,21 +14,6 @@
 #include "refractive/port.h"
 
 namespace axial {
-
-// The lens in air, its distortion and the port. The unit of the lens is the pixel of an image of
-// width x height pixels, with pixel centres at integers.
-struct CameraModel {
-  int width = 0;                                     // [px]
-  int height = 0;                                    // [px]
-  refractive::PinholeLens<double> lens{0, 0, 0, 0};  // the lens without its distortion
-  std::optional<refractive::Port<double>> port;      // empty: no port
-  std::optional<refractive::LensDistortion<double>> distortion = {};  // empty: no distortion
-
-  // The camera for the image resized to new_width x new_height pixels. Each axis of the lens is
-  // scaled by its own factor. The corner of the image at (-0.5, -0.5) stays fixed. Distortion and
-  // port do not change. Precondition: width and height are not 0.
-  CameraModel resized(int new_width, int new_height) const;
-};
 
 // The lens of `model`, with or without distortion, as the constructor of refractive::LensCamera
 // takes it. The image is widened by the default margin, an eighth of its longer side.

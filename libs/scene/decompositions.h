@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 
-#include "scene/pose.h"
+#include "axial/scene.h"
 
 extern template class Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
 

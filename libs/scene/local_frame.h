@@ -7,19 +7,9 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "scene/scene.h"
+#include "axial/scene.h"
 
 namespace axial {
-
-// A frame whose axes are parallel to those of the world: world = local + origin. With a zero origin
-// the frame is the world.
-struct LocalFrame {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // [world]
-
-  bool is_world() const { return origin.isZero(0); }
-  Eigen::Vector3d to_local(const Eigen::Vector3d& world) const { return world - origin; }
-  Eigen::Vector3d to_world(const Eigen::Vector3d& local) const { return local + origin; }
-};
 
 // Returns the world (a zero origin) if `place` [world] lies within 1,000 units of the world's
 // origin. Otherwise the origin of the result is `place`, with each coordinate rounded to a multiple

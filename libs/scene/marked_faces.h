@@ -4,8 +4,8 @@
 
 #include <cstddef>
 
+#include "axial/scene_images.h"
 #include "scene/mesh.h"
-#include "scene/textured_mesh.h"
 
 namespace axial {
 

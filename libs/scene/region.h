@@ -4,16 +4,9 @@
 
 #include <optional>
 
-#include "scene/scene.h"
+#include "axial/scene_options.h"
 
 namespace axial {
-
-// Whether estimate_region() estimates a region.
-enum class RegionMode {
-  off = 0,      // there is no region
-  on = 1,       // the region is estimated whenever this is possible
-  adaptive = 2  // only if the cameras surround an object; otherwise there is no region
-};
 
 // Estimates the region as an axis-aligned box [world units]. Let c be the point at which the
 // cameras look, estimated from the poses of the calibrated cameras, and R the distance from c to

@@ -4,15 +4,9 @@
 
 #include <opencv2/core.hpp>
 
-#include "scene/camera_model.h"
+#include "axial/scene_options.h"
 
 namespace axial {
-
-struct ResolutionOptions {
-  unsigned level = 1;  // largest number of halvings of the image; 0: the image is not halved
-  int min = 640;       // least longest side that halving may give [px]
-  int max = 2560;      // upper bound of the longest side [px]
-};
 
 // The size [px] at which an image of width x height pixels is processed. The longest side is halved
 // up to `level` times (rounded down), as long as the result is at least `min`. A smaller image is

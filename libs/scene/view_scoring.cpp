@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/heap_bytes.h"
 #include "base/parallel.h"
+#include "scene/camera_model.h"
 #include "scene/view_selection.h"
 
 namespace axial {

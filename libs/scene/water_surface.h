@@ -5,8 +5,8 @@
 
 #include <string>
 
+#include "axial/scene.h"
 #include "refractive/flat_port.h"
-#include "scene/pose.h"
 
 namespace axial {
 

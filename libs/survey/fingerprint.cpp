@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "io/artifacts/artifact.h"
 #include "io/bytes/json.h"
+#include "survey/memory_survey.h"
 
 namespace axial::survey {
 namespace fs = std::filesystem;
@@ -56,6 +57,14 @@ std::string content_of(const std::vector<fs::path>& files) {
   return print.hex();
 }
 
+std::string content_of(const MemorySurvey& survey, std::size_t image) {
+  const io::Photograph photograph = photograph_of(survey, image);
+  Fingerprint print;
+  add_pixels(print, photograph.pixels);
+  add_pixels(print, photograph.opaque);
+  return print.hex();
+}
+
 // A fingerprint of names, sizes and times of change. Empty if a file does not exist.
 std::string state_of(const std::vector<fs::path>& files) {
   Fingerprint state;
@@ -75,6 +84,13 @@ std::string kept_or_read(const nlohmann::json& kept, const std::string& state,
 
 }  // namespace
 
+void add_pixels(Fingerprint& print, const cv::Mat& pixels) {
+  print.add(static_cast<std::uint64_t>(pixels.rows)).add(static_cast<std::uint64_t>(pixels.cols));
+  const std::size_t bytes = static_cast<std::size_t>(pixels.cols) * pixels.elemSize();
+  for (int y = 0; y < pixels.rows; ++y)
+    print.add({reinterpret_cast<const char*>(pixels.ptr(y)), bytes});
+}
+
 std::vector<std::string> contents_of_views(const Survey& survey, const KeptContents& kept,
                                            const Context& context) {
   const nlohmann::json old =
@@ -83,8 +99,11 @@ std::vector<std::string> contents_of_views(const Survey& survey, const KeptConte
   std::vector<std::string> prints(survey.views.size()), states(survey.views.size());
   ProgressCounter counter(context.stage("Fingerprints of images"), prints.size());
   parallel_for(prints.size(), [&](std::size_t v) {
-    if (!survey.views[v].file.empty()) {
-      const std::vector<fs::path> files = files_of(survey.views[v]);
+    const View& view = survey.views[v];
+    if (const auto& memory = survey.options.memory_survey; memory && !view.file.empty()) {
+      prints[v] = content_of(*memory, view.image);
+    } else if (!view.file.empty()) {
+      const std::vector<fs::path> files = files_of(view);
       states[v] = kept.read ? state_of(files) : std::string();
       prints[v] = kept_or_read(old, states[v], files);
     }

@@ -7,6 +7,7 @@
 #include "io/images/image.h"
 #include "scene/resolution.h"
 #include "survey/black_border.h"
+#include "survey/memory_survey.h"
 
 namespace axial::survey {
 namespace {
@@ -60,7 +61,9 @@ Pixels Photographs::read(std::size_t view, Channels channels) const {
   const View& from = survey_.views[view];
   const Options& options = survey_.options;
   Pixels result;
-  io::Photograph photograph = io::read_photograph(from.file);
+  io::Photograph photograph = options.memory_survey
+                                  ? photograph_of(*options.memory_survey, from.image)
+                                  : io::read_photograph(from.file);
   result.color = resized_image(io::in_8_bits(photograph.pixels, survey_.bit_depth), size_of(from));
   photograph.pixels.release();
   if (channels != Channels::color) cv::cvtColor(result.color, result.grey, cv::COLOR_BGR2GRAY);

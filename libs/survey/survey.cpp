@@ -10,7 +10,9 @@
 #include "io/images/photograph_size.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/scene_files.h"
+#include "scene/resolution.h"
 #include "survey/masks.h"
+#include "survey/memory_survey.h"
 #include "survey/views_file.h"
 
 namespace axial::survey {
@@ -18,13 +20,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-View view_of(const SceneImage& image, std::size_t index, const ResolutionOptions& resolution) {
+View view_of(const SceneImage& image, std::size_t index, const Options& options) {
   View view;
   view.image = index;
   view.id = image.id == kNoId ? static_cast<std::uint32_t>(index) : image.id;
   view.file = image.path;
-  view.header = io::read_image_header(image.path);
-  const cv::Size size = working_size(view.header.size.width, view.header.size.height, resolution);
+  view.header = options.memory_survey ? header_of(*options.memory_survey, index)
+                                      : io::read_image_header(image.path);
+  const cv::Size size =
+      working_size(view.header.size.width, view.header.size.height, options.resolution);
   view.camera = image.camera.resized(size.width, size.height);
   view.pose = image.pose;
   return view;
@@ -47,8 +51,7 @@ void read_headers(Survey& survey) {
   FirstError error;
   parallel_for(images.size(), [&](std::size_t v) {
     error.run(v, [&] {
-      survey.views[v] =
-          view_of(survey.scene.images[images[v]], images[v], survey.options.resolution);
+      survey.views[v] = view_of(survey.scene.images[images[v]], images[v], survey.options);
     });
   });
   error.rethrow();
@@ -101,7 +104,13 @@ Survey open_scene(const Options& options, const Context& context) {
   if (context.memory().is_limited())
     if (const auto counts = io::count_mvs(file))
       context.memory().require(counts->reading_bytes(), "reading " + file.string());
-  Survey survey{io::read_scene_with_cameras(options.files), options, {}, {}, 16, nullptr};
+  Survey survey{options.memory_survey ? scene_of(*options.memory_survey)
+                                      : io::read_scene_with_cameras(options.files),
+                options,
+                {},
+                {},
+                16,
+                nullptr};
   survey.inputs = io::files_of_scene(options.files, survey.scene);
   return survey;
 }

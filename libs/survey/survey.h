@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "axial/survey.h"
 #include "base/context.h"
 #include "geometry/posed_camera.h"
 #include "io/images/image.h"
 #include "io/openmvs/scene_with_cameras.h"
-#include "survey/options.h"
 #include "survey/photograph_check.h"
 
 namespace axial::survey {
@@ -26,7 +26,7 @@ struct View {
   Pose pose;
   std::size_t image = 0;       // index into Scene::images
   std::uint32_t id = 0;        // SceneImage::id, or the index of the image if that is kNoId
-  std::filesystem::path file;  // the photograph
+  std::filesystem::path file;  // the photograph; of a survey in memory: SceneImage::path
   io::ImageHeader header;      // of the photograph
   std::filesystem::path mask;  // file of the mask; empty: none
 
@@ -65,9 +65,14 @@ struct Survey : io::SceneWithCameras {
 void keep_inputs(std::span<const std::filesystem::path> outputs,
                  std::span<const std::filesystem::path> inputs, const std::string& setting);
 
-// Reads the scene with its frame, lenses and ports. No photograph is read. `inputs` are the files
-// that belong to the scene (io::files_of_scene). Errors as for io::read_scene_with_cameras(), and
-// for too little memory.
+// Sets what is left out by the label of a program whose label -1 means black borders, and whose
+// labels below -1 mean that all pixels are used.
+void use_mask_label(Options& options, int label);
+
+// Reads the scene with its frame, lenses and ports, or takes Options::memory_survey, of which it
+// checks check() and makes a copy. No photograph is read. `inputs` are the files that belong to the
+// scene (io::files_of_scene). Errors as for io::read_scene_with_cameras(), and for too little
+// memory.
 Survey open_scene(const Options& options, const Context& context = {});
 
 // Finds the photographs and their masks, and reads the headers of the photographs. All calibrated

@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "base/memory_budget.h"
+#include "axial/base.h"
 #include "scene/mesh.h"
 #include "texture/charts.h"
 #include "texture/packing.h"

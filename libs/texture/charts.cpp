@@ -6,6 +6,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
+#include "scene/camera_model.h"
 #include "texture/labels.h"
 
 namespace axial::texture {

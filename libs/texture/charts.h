@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
+#include "axial/texture.h"
 #include "geometry/lists.h"
 #include "scene/mesh.h"
 #include "texture/adjacency.h"
-#include "texture/views.h"
 
 namespace axial::texture {
 

@@ -8,6 +8,7 @@
 #include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "geometry/faces.h"
+#include "texture/labels.h"
 #include "texture/outliers.h"
 
 namespace axial::texture {

@@ -16,9 +16,9 @@
 #include <span>
 #include <vector>
 
+#include "axial/texture.h"
 #include "texture/adjacency.h"
 #include "texture/mesh_tiles.h"
-#include "texture/texture_mesh.h"
 
 namespace axial::texture {
 

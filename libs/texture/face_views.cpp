@@ -9,8 +9,10 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "geometry/posed_camera.h"
 #include "geometry/vertex_normals.h"
 #include "scene/bilinear.h"
+#include "scene/camera_model.h"
 
 namespace axial::texture {
 namespace {

@@ -7,43 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "base/memory_budget.h"
+#include "axial/texture.h"
 #include "base/progress.h"
 #include "geometry/surface.h"
 #include "scene/mesh.h"
 #include "texture/mesh_tiles.h"
-#include "texture/views.h"
 
 namespace axial::texture {
-
-// A view that sees a face, or only a part of the face.
-struct Sight {
-  std::uint32_t view = 0;  // index into the views of find_face_views()
-  float quality = 0;       // higher is better; find_face_views() defines it
-  // Mean colour of the face in this view, B G R. It has no meaning if `whole` is false.
-  std::array<std::uint8_t, 3> color{};
-  bool whole = true;  // the view sees all of the face
-};
-
-// The sights of all faces in one array. The sights of face f are at [begin[f], begin[f + 1]) of
-// `sights`, in the order of the views. All sights of one face have the same Sight::whole.
-struct FaceViews {
-  std::vector<std::uint64_t> begin;
-  std::vector<Sight> sights;
-
-  std::size_t faces() const { return begin.size() - 1; }
-  std::span<const Sight> of(std::size_t face) const {
-    return std::span(sights).subspan(begin[face], begin[face + 1] - begin[face]);
-  }
-};
-
-struct VisibilityOptions {
-  // A face does not hide a point of the mesh if it crosses the path of light less than tolerance *
-  // L from the point. L is the length of the path from the point to the place where the light
-  // leaves the water. Range: 0 to 1. The default is the ratio of a pixel's width on the surface to
-  // the distance, for a focal length of 1000 px.
-  double tolerance = 1e-3;
-};
 
 struct ViewMemory {
   MemoryBudget budget;            // of find_face_views() with its result, besides the mesh

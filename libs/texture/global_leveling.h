@@ -8,20 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "axial/texture.h"
 #include "texture/charts.h"
 #include "texture/seam_colors.h"
 
 namespace axial::texture {
-
-struct GlobalLevelingOptions {
-  // Weight of the squared difference between the corrections of two neighbouring nodes of a chart.
-  // An edge at the border of a chart has half of this weight. For comparison, the squared
-  // difference at an end of a seam has the weight 1.
-  double smoothness = 0.01;
-  // Weight of the squared correction itself, above 0. This term keeps the corrections from drifting
-  // along chains of charts.
-  double smallness = 1e-4;
-};
 
 // Returns for each node the correction g, a colour to add [grey levels, B G R]. The corrections are
 // the least-squares solution, by conjugate gradients, of

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "axial/texture.h"
 #include "texture/adjacency.h"
 #include "texture/face_views.h"
 
@@ -14,15 +15,6 @@ namespace axial::texture {
 
 // Stands for the view of a face that no view sees.
 inline constexpr std::uint32_t kNoView = std::numeric_limits<std::uint32_t>::max();
-
-struct LabelOptions {
-  // The weight of the quality of a face, relative to the weight of a seam at one of its edges (see
-  // the cost in choose_views()). With a ratio near 0 there are as few seams as possible. The larger
-  // the ratio, the more faces get their best view.
-  double cost_smoothness_ratio = 0.1;
-  // At most this number of alpha expansions of each view. 0: each face gets its best view.
-  int max_cycles = 3;
-};
 
 // Returns for each face the index of its view, or kNoView for a face that no view sees. `pairs`:
 // the result of face_pairs() (adjacency.h). The result minimises, approximately, the cost

@@ -4,17 +4,10 @@
 
 #include <span>
 
-#include "base/memory_budget.h"
+#include "axial/base.h"
 #include "texture/global_leveling.h"
 
 namespace axial::texture {
-
-struct LevelingOptions {
-  bool global = true;  // smooth corrections of whole charts (global_leveling.h)
-  bool local = true;   // corrections in a strip along the seams, see level_charts()
-  GlobalLevelingOptions global_options;
-  int strip = 20;  // width of the strip [px]; the local correction reaches zero at this distance
-};
 
 // The corrections at the seams of all charts.
 struct Corrections {

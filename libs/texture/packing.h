@@ -7,12 +7,9 @@
 #include <span>
 #include <vector>
 
-namespace axial::texture {
+#include "axial/texture.h"
 
-struct PackingOptions {
-  int max_size = 8192;  // largest side of a texture [px]; 0: 32768, the packer's limit
-  int multiple = 0;     // sides are multiples of this number [px]; 0: powers of two
-};
+namespace axial::texture {
 
 // The largest side of a texture [px] that the options allow. Errors as for pack().
 int largest_side(const PackingOptions& options);

@@ -2,8 +2,8 @@
 // The photographs of a survey, as texturing reads them.
 #pragma once
 
+#include "axial/texture.h"
 #include "survey/photographs.h"
-#include "texture/views.h"
 
 namespace axial::texture {
 

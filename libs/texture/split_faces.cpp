@@ -9,6 +9,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "geometry/edges.h"
+#include "geometry/posed_camera.h"
+#include "scene/camera_model.h"
 
 namespace axial::texture {
 namespace {

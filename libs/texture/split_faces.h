@@ -7,16 +7,11 @@
 #include <cstddef>
 #include <span>
 
+#include "axial/texture.h"
 #include "base/context.h"
 #include "scene/mesh.h"
-#include "texture/views.h"
 
 namespace axial::texture {
-
-struct SplitOptions {
-  double tolerance = 0.25;             // largest error of a linear image inside a face [px]
-  std::size_t max_faces = 20'000'000;  // largest number of faces that splitting may give
-};
 
 // Splits edges in the middle, together with the faces at the edges, until the error of each edge is
 // at most 3/4 of the tolerance. The error of an edge in a view is the distance [px] from the exact

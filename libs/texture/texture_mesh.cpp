@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "texture/texture_mesh.h"
-
 #include <algorithm>
 
+#include "axial/texture.h"
 #include "base/memory.h"
 #include "scene/check_mesh.h"
 #include "texture/face_labels.h"
+#include "texture/labels.h"
+#include "texture/split_faces.h"
 #include "texture/tile_painter.h"
 
 namespace axial::texture {

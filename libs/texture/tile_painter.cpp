@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "geometry/posed_camera.h"
 
 namespace axial::texture {
 namespace {

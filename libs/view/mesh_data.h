@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "axial/scene_images.h"
 #include "scene/mesh.h"
-#include "scene/textured_mesh.h"
 
 namespace axial::view {
 

@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
+#include "axial/scene.h"
 #include "base/parallel.h"
 #include "io/images/image.h"
 #include "scene/any_camera.h"
 #include "scene/bilinear.h"
-#include "scene/pose.h"
 #include "simulate/ray_scene.h"
 #include "simulate/render.h"
 

@@ -147,7 +147,7 @@ class Headers(unittest.TestCase):
             result = self.made(folder)
             self.assertEqual((result.returncode, result.stdout), (0, ""))
             pages = pathlib.Path(folder) / "html"
-            for part in ("refractive", "libs/densify"):
+            for part in ("refractive", "libs/public/axial"):
                 for header in (ROOT / part).glob("*.h"):
                     page = pages / (header.name.replace("_", "__").replace(".", "_8") + ".html")
                     self.assertTrue(page.is_file(), header)

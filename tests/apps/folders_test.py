@@ -40,14 +40,16 @@ def included(root, folder, file):
     of folders. The library is None for files outside the libraries and for headers that do not
     exist."""
     owners = {path.resolve(): name for name, path in libraries(root).items()}
+    for header in root.glob("libs/public/axial/*.h"):  # scene_images.h belongs to the library scene
+        owners[header.resolve()] = header.stem.split("_")[0]
     text = file.read_text(encoding="utf-8")
     for sign, name in re.findall(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', text, re.M):
-        places = [root / "libs", root]
+        places = [root / "libs/public", root / "libs", root]
         if sign == '"':
             places = [file.parent, *places, folder]  # the last for headers in private/
         found = [(place / name).resolve() for place in places if (place / name).is_file()]
         if found:
-            yield name, next((owners[up] for up in found[0].parents if up in owners), None)
+            yield name, next((owners[up] for up in (found[0], *found[0].parents) if up in owners), None)
         elif sign == '"' and name not in GENERATED:
             yield name, None
 
@@ -105,6 +107,14 @@ class Folders(unittest.TestCase):
         self.assertEqual([name for name in built[2:] if not links[name]], [])
         for i, name in enumerate(built):
             self.assertLessEqual(links[name], set(built[:i]), name)
+
+    def test_public_headers_include_no_private_header(self):
+        names = set(libraries(ROOT))
+        for header in (ROOT / "libs/public/axial").glob("*.h"):
+            self.assertIn(header.stem.split("_")[0], names)
+            included_names = re.findall(r'#include "([^"]+)"', header.read_text(encoding="utf-8"))
+            private = [name for name in included_names if not name.startswith(("axial/", "refractive/"))]
+            self.assertEqual(private, [], header)
 
     def test_contributing_draws_the_arrows_of_cmake(self):
         text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")

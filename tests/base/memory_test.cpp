@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
+#include "axial/base.h"
 #include "base/error.h"
-#include "base/memory_budget.h"
 #include "support/empty_folder.h"
 #include "support/error_of.h"
 

@@ -7,6 +7,7 @@
 #include "cloud/colors.h"
 #include "cloud/crop.h"
 #include "cloud/normals.h"
+#include "scene/camera_model.h"
 #include "support/analytic_scene.h"
 
 namespace axial::cloud {

@@ -12,6 +12,7 @@
 
 #include "base/parallel.h"
 #include "cloud/fusion_fixture.h"
+#include "scene/camera_model.h"
 
 namespace axial::cloud {
 namespace {

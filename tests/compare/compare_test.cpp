@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "compare/compare.h"
+#include "axial/compare.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

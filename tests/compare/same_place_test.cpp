@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "compare/compare.h"
+#include "axial/compare.h"
 #include "support/error_of.h"
 #include "two_surveys.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The whole library on photographs of a textured floor.
-#include "densify/densify.h"
+#include "axial/densify.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

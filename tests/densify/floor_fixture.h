@@ -9,7 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-#include "densify/densify.h"
+#include "axial/densify.h"
 #include "io/images/image.h"
 #include "io/openmvs/mvs.h"
 #include "scene/scene.h"

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/atomic_file.h"
+#include "base/parallel.h"
 #include "base/tiling.h"
 #include "densify/floor_fixture.h"
 #include "densify/memory_plan.h"

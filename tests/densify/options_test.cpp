@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Options that contradict each other or the job of the run.
-#include "densify/options.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "axial/densify.h"
 #include "support/error_of.h"
 
 namespace axial::densify {

@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "scene/camera_model.h"
 #include "support/analytic_scene.h"
 
 namespace axial::depth {

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "base/error.h"
+#include "scene/camera_model.h"
 
 namespace axial::evaluate {
 namespace {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "scene/camera_model.h"
 #include "worlds/height_field.h"
 #include "worlds/ports.h"
 

@@ -71,8 +71,10 @@ class Installed(Case):
         prefix, build = self.folder / "usr", self.folder / "build"
         output_of("cmake", "--install", BUILD, "--prefix", prefix)
         self.check_programs(prefix)
-        headers = [path.relative_to(prefix) for path in prefix.rglob("*.h")]
-        self.assertFalse([path for path in headers if "private" in path.parts])
+        include = prefix / "include/axialmvs"
+        headers = {path.relative_to(include).parts[:-1] for path in prefix.rglob("*.h")}
+        self.assertEqual(headers, {("axial",), ("refractive",)})
+        self.assertLessEqual(len(list(include.glob("axial/*.h"))), 25)
         output_of("cmake", "-S", os.path.join(SOURCE, "tests/install/sample"), "-B", build,
                   "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
         output_of("cmake", "--build", build)
@@ -89,7 +91,10 @@ class Installed(Case):
                           b"property float x\nproperty float y\nproperty float z\nend_header\n" +
                           struct.pack("<6f", 1, 2, 3, 4, 5, 6))
         self.assertEqual(output_of(build / "count_points", cloud), "2\n")
+        self.assertRegex(output_of(build / "use_mesh"),
+                         r"^mesh: 8 faces\nmap: 20 columns\ncompare: 0 changes\nrefine: .+\ntexture: .+\n$")
         self.check_densify(prefix / "bin", build / "densify_scene")
+        self.check_memory(build / "densify_memory")
 
     def check_densify(self, programs, densify):
         """Runs a survey under water by the library: with progress, stopped, continued, and with a refused option."""
@@ -114,6 +119,36 @@ class Installed(Case):
         self.assertEqual(whole.returncode, 0, whole.stderr)
         self.assertRegex(whole.stdout, r"Estimated depth maps: [123] maps existed already\n")
         self.assertRegex(whole.stdout, r"Fused depth maps: 4 of 4\n(.*\n)*[1-9]\d{3,} points in ")
+
+
+    def check_memory(self, densify):
+        """Runs a simulated survey whose data are in memory: refused, stopped, continued in a folder, and without
+        files."""
+        out, temporary = self.folder / "memory", self.folder / "temporary"
+        out.mkdir()
+        temporary.mkdir()
+
+        def run(*arguments):
+            return subprocess.run([str(word) for word in (densify, *arguments)], text=True, capture_output=True,
+                                  timeout=240, env={**os.environ, "TMPDIR": str(temporary)})
+
+        refused = run(0, 0)
+        self.assertEqual(refused.returncode, 1, refused.stdout)
+        self.assertRegex(refused.stderr, r"^tiles 0: .*\n$")
+        for folder in ([], [out]):
+            stopped = run(2, 1, *folder)
+            self.assertEqual(stopped.returncode, 2, stopped.stderr)
+            self.assertLess(float(re.search(r"^stopped after (.*) s$", stopped.stdout, re.M)[1]), 2)
+        whole, continued = run(), run(0, 1, out)
+        self.assertEqual((whole.returncode, continued.returncode), (0, 0), whole.stderr + continued.stderr)
+        self.assertRegex(continued.stdout, r"Estimated depth maps: [234] maps existed already\n")
+        result = re.search(r"\n6 maps, (\d+) points, mean distance (.*) m\n$", whole.stdout)
+        self.assertTrue(result, whole.stdout)
+        self.assertGreater(int(result[1]), 5000)
+        self.assertLess(float(result[2]), 0.01)  # one pixel of disparity: 1.5 m * 1.5 m / (213 px * 0.2 m) = 0.05 m
+        self.assertTrue(continued.stdout.endswith(result[0]), continued.stdout)
+        self.assertEqual(list(temporary.iterdir()), [])
+        self.assertTrue((out / "dense.ply").exists())
 
 
 class DebianPackage(Case):

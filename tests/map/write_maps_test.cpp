@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Maps as files, and maps made from photographs through a port.
-#include "map/write_maps.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "axial/map.h"
 #include "base/atomic_file.h"
 #include "base/parallel.h"
 #include "map/geotiff.h"

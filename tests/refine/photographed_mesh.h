@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "axial/refine.h"
 #include "base/order_statistics.h"
-#include "refine/refine.h"
 #include "support/textured_scene.h"
 #include "worlds/height_field.h"
 #include "worlds/ports.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "refine/refine.h"
+#include "axial/refine.h"
 
 #include <gmock/gmock.h>
 

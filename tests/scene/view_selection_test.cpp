@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "io/openmvs/mvs.h"
+#include "scene/camera_model.h"
 #include "support/analytic_scene.h"
 
 namespace axial {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "scene/camera_model.h"
 #include "scene/depth_map.h"
 #include "scene/scene.h"
 

@@ -6,8 +6,8 @@
 #include <opencv2/core.hpp>
 #include <variant>
 
+#include "axial/scene.h"
 #include "scene/camera_model.h"
-#include "scene/pose.h"
 
 namespace axial::test {
 

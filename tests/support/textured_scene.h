@@ -9,10 +9,10 @@
 #include <opencv2/core.hpp>
 #include <variant>
 
+#include "axial/scene.h"
 #include "base/hash.h"
 #include "scene/camera_model.h"
 #include "scene/depth_map.h"
-#include "scene/pose.h"
 
 namespace axial::test {
 

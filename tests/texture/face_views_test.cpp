@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scene/camera_model.h"
 #include "texture/outliers.h"
 #include "texture/painted_room.h"
 

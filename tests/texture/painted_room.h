@@ -10,10 +10,10 @@
 #include <optional>
 #include <vector>
 
+#include "axial/scene_images.h"
+#include "axial/texture.h"
 #include "scene/bilinear.h"
-#include "scene/textured_mesh.h"
 #include "simulate/render.h"
-#include "texture/texture_mesh.h"
 
 namespace axial::test {
 

@@ -5,6 +5,7 @@
 
 #include <map>
 
+#include "scene/camera_model.h"
 #include "texture/painted_room.h"
 
 namespace axial::texture {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "texture/texture_mesh.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <optional>
 #include <set>
 
+#include "axial/texture.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "support/error_of.h"
+#include "texture/face_views.h"
 #include "texture/painted_room.h"
 
 namespace axial::texture {

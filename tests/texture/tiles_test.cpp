@@ -12,6 +12,7 @@
 #include "geometry/faces.h"
 #include "support/error_of.h"
 #include "texture/face_labels.h"
+#include "texture/face_views.h"
 #include "texture/painted_room.h"
 
 namespace axial::texture {

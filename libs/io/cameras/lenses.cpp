@@ -10,6 +10,7 @@
 #include "base/output_name.h"
 #include "private/cameras/image_names.h"
 #include "private/cameras/port_json.h"
+#include "scene/camera_model.h"
 
 namespace axial::io {
 namespace {

@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "axial/scene.h"
 #include "refractive/port.h"
-#include "scene/pose.h"
 #include "scene/scene.h"
 
 namespace axial::io {

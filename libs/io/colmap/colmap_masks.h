@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string>
 
+#include "axial/base.h"
 #include "base/progress.h"
-#include "base/setting_names.h"
 
 namespace axial::io {
 

@@ -16,6 +16,7 @@
 #include "io/images/masks.h"
 #include "private/cameras/image_names.h"
 #include "private/colmap/colmap_undistort.h"
+#include "scene/camera_model.h"
 
 namespace axial::io {
 

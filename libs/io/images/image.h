@@ -10,6 +10,8 @@
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "axial/io.h"
+
 namespace axial::io {
 
 // The properties of a photograph that are known without its pixels.
@@ -19,12 +21,6 @@ struct ImageHeader {
   bool alpha = false;  // pixels may be transparent
   unsigned decode_bytes =
       4;  // memory [bytes per pixel] during decoding, for the file, the library and the result
-};
-
-// A decoded photograph.
-struct Photograph {
-  cv::Mat pixels;    // B G R, CV_8UC3 or CV_16UC3
-  cv::Mat1b opaque;  // 0: fully transparent, 255: other; empty: no pixel is fully transparent
 };
 
 // Reads a photograph of 8 or 16 bits. A grey image gives three equal channels. Error for

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "base/setting_names.h"
+#include "axial/base.h"
 #include "scene/local_frame.h"
 #include "scene/mesh.h"
 

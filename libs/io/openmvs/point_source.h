@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <optional>
 
+#include "axial/scene_images.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/ply/ply.h"
 #include "scene/local_frame.h"
 #include "scene/mesh.h"
 #include "scene/point_cloud.h"
 #include "scene/scene.h"
-#include "scene/textured_mesh.h"
 
 namespace axial::io {
 

@@ -7,33 +7,13 @@
 #include <filesystem>
 #include <optional>
 
-#include "base/setting_names.h"
+#include "axial/io.h"
 #include "io/cameras/housing.h"
 #include "io/cameras/lenses.h"
 #include "scene/local_frame.h"
 #include "scene/scene.h"
 
 namespace axial::io {
-
-// Which ports the cameras of a scene get.
-enum class PortChoice {
-  automatic,  // the ports of the housing file, if there is one
-  ignored,    // the housing file is not read
-  required,   // a housing file must exist and give at least one image a port
-  flat        // a housing file must exist and give every calibrated image a flat port
-};
-
-// The files of a scene. The paths are absolute. Messages name four settings: "allow_missing",
-// "housing", "refractive" (PortChoice::required) and "camera is flat_port" (PortChoice::flat).
-// `name_of` translates these names to the names that the user knows.
-struct SceneFiles {
-  std::filesystem::path scene;           // the .mvs file
-  std::filesystem::path working_folder;  // relative image paths in the scene start here
-  std::filesystem::path housing;         // empty: the housing file beside the scene, if any
-  PortChoice ports = PortChoice::automatic;
-  bool allow_missing = false;  // true: warn if `housing` gives no image a port, instead of an Error
-  SettingNames name_of = own_name;
-};
 
 // The result of read_scene_with_cameras().
 struct SceneWithCameras {

@@ -10,29 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "scene/local_frame.h"
-#include "scene/mesh.h"
-#include "scene/point_cloud.h"
+#include "axial/io.h"
 
 namespace axial::io {
-
-// Reads a cloud. Properties are recognised by their names: x y z, nx ny nz, red green blue (or
-// diffuse_red and so on), view_indices, view_weights. Old (float, uchar) and new (float32, uint8)
-// names of types are accepted. Other elements and properties are skipped. Arrays of the result are
-// empty where the file has no such property. Colours are clamped to 0 to 255. Error and confidence
-// of points are not read.
-//
-// Positions are returned as stored. If the file has a line "comment geo_offset X Y Z", the stored
-// positions are relative to the point X Y Z. Otherwise the file does not state their origin.
-//
-// Error that names the file for a malformed or truncated file, vertices without x, y or z, or a
-// position or normal that is not finite.
-PointCloud read_cloud_ply(const std::filesystem::path& path);
-
-// Reads a cloud and returns its positions in `frame`. The origin of the stored positions is the
-// point in the file's comment geo_offset, or the world's origin if there is no such comment. The
-// positions are moved in double precision and then rounded to float.
-PointCloud read_cloud_ply(const std::filesystem::path& path, const LocalFrame& frame);
 
 // Receives a portion of a cloud, and the number of points of the whole cloud.
 using CloudPortionSink = std::function<void(PointCloud portion, std::size_t all_points)>;
@@ -57,14 +37,6 @@ struct PlyPlace {
 // Returns the place of the positions of a file. Only the header and the first vertex are
 // interpreted. Errors as for read_cloud_ply().
 PlyPlace ply_place(const std::filesystem::path& path);
-
-// How positions are written. If `world` is true, positions are written as float64 in world
-// coordinates. Otherwise positions are written as float32 in `frame`, and a comment geo_offset
-// states the origin of `frame` unless `frame` is the world.
-struct PlyPlacement {
-  LocalFrame frame;    // of the positions in memory
-  bool world = false;  // see above
-};
 
 // The properties that a file of a cloud has for each point besides its position. `views` stands for
 // view_indices.
@@ -108,28 +80,6 @@ class CloudWriter {
   struct File;
   std::unique_ptr<File> file_;
 };
-
-// Writes a whole cloud and replaces an existing file. The file has the properties whose arrays in
-// `cloud` are not empty, with one exception: view_indices and view_weights are written only if
-// `with_views` is true. Errors as for CloudWriter::add.
-void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
-                     bool with_views = true, const PlyPlacement& placement = {});
-
-// Read a mesh. Faces with more than three corners are split into a fan of triangles. Strips in an
-// element tristrips become triangles. The property unseen of the faces, if there is one, becomes
-// Mesh::unseen: 0 stays 0, and other numbers become 1. Positions are returned as by the function
-// read_cloud_ply with the same parameters. Error that names the file for a file without an element
-// face or tristrips, a face with fewer than three corners, or a vertex index out of range. Other
-// errors as for read_cloud_ply.
-Mesh read_mesh_ply(const std::filesystem::path& path);
-Mesh read_mesh_ply(const std::filesystem::path& path, const LocalFrame& frame);
-
-// Writes a mesh, with its colours and the property unseen of its faces (uint8) if it has them, and
-// replaces an existing file. Error that names the file if the number of colours is neither 0 nor
-// the number of vertices, if the number of marks is neither 0 nor the number of faces, or if the
-// file cannot be written. Vertex indices are not checked.
-void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
-                    const PlyPlacement& placement = {});
 
 // Functions for writers of other PLY files. All positions are placed as `placement` demands.
 // geo_comment returns the header line "comment geo_offset X Y Z" with its newline, or an empty text

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "axial/scene_images.h"
 #include "io/ply/ply.h"
-#include "scene/textured_mesh.h"
 
 namespace axial::io {
 

@@ -2,7 +2,7 @@
 // Prints the number of points of a cloud.
 #include <cstdio>
 
-#include "io/ply/ply.h"
+#include "axial/io.h"
 
 int main(int, char** argv) {
   std::printf("%zu\n", axial::io::read_cloud_ply(argv[1]).size());

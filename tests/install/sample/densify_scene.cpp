@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <stop_token>
 
-#include "densify/densify.h"
+#include "axial/densify.h"
 
 namespace {
 

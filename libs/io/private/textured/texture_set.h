@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "axial/scene_images.h"
 #include "base/error.h"
 #include "private/only_for_io.h"
 #include "scene/point_cloud.h"
-#include "scene/textured_mesh.h"
 
 namespace axial::io {
 

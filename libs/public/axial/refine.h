@@ -16,7 +16,7 @@
 //       sum over pairs and pixels of w (e + sum_k g_k t_k)^2
 //     + sum over vertices of a_v (t_v + o_v)^2
 //     + smoothness * integral of s (curvature of the displaced surface)^2
-//     + the squares of the slopes between displacements of neighbours (system.h).
+//     + the squares of the slopes between displacements of neighbours.
 //
 // w: the inverse of the variance of the residuals in the window. So windows that look different in
 // the two views, for example because of occlusion, count little.
@@ -24,8 +24,8 @@
 // the step. The first position is the vertex's position before the first step. It counts as a
 // measurement.
 // a_v: the weight of the first position. The weight grows with the information of the photographs
-// on the vertex, and is small where the photographs contradict the first position (anchor.h).
-// s: a factor that is less than one at edges of the surface (system.h).
+// on the vertex, and is small where the photographs contradict the first position.
+// s: a factor that is less than one at edges of the surface.
 // curvature: half of the mean curvature.
 #pragma once
 
@@ -36,10 +36,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/context.h"
-#include "base/setting_names.h"
-#include "geometry/posed_camera.h"
-#include "scene/mesh.h"
+#include "axial/base.h"
+#include "axial/geometry.h"
+#include "axial/scene.h"
 
 namespace axial::refine {
 
@@ -86,7 +85,7 @@ struct Options {
 struct Report {
   std::size_t split_faces = 0;  // number of faces that splitting has added
   std::size_t pairs = 0;        // number of pairs of views
-  // Number of vertices that the last step measured: their position affects a residual (system.h).
+  // Number of vertices that the last step measured: their position affects a residual.
   std::size_t measured = 0;
   unsigned steps = 0;  // number of Gauss-Newton steps at all resolutions
   // The median distance of the measured vertices from their positions before the first step [mesh
@@ -109,7 +108,7 @@ using Checkpoint = std::function<void(const State& state)>;
 
 // Refines `state.mesh`. First, large faces are split (Options::max_face_area). A vertex that
 // splitting adds has the mean colour of the two ends of its edge. Second, folds are flattened
-// (flatten_folds() of displace.h). Third, Gauss-Newton steps move the vertices. The steps do not
+//. Third, Gauss-Newton steps move the vertices. The steps do not
 // move vertices that no pair measures, unless measured vertices are near: there, the smoothness
 // term moves them with the surface. Faces of the result may intersect each other. The result does
 // not depend on the number of threads.
@@ -120,11 +119,10 @@ using Checkpoint = std::function<void(const State& state)>;
 // "Refined" never falls: it is the part of the expected work of this call, in which a resolution
 // counts in proportion to its pixels.
 //
-// Throws an Error if check_mesh() refuses the mesh (scene/check_mesh.h), for example a mesh without
-// faces. Throws an Error if no two views see the same surface, or if the limit of Context::memory()
-// is not enough for the memory besides the mesh and the images of `pictures` (memory.h). The limit
-// affects the time, but not the result. After the last two errors, faces of `state.mesh` may have
-// been split.
+// Throws an Error if check_mesh() refuses the mesh, for example a mesh without faces. Throws an
+// Error if no two views see the same surface, or if the limit of Context::memory() is not enough
+// for the memory besides the mesh and the images of `pictures`. The limit affects the time, but not
+// the result. After the last two errors, faces of `state.mesh` may have been split.
 void refine(State& state, std::span<const PosedCamera> views, const Pictures& pictures,
             const Options& options = {}, const Checkpoint& checkpoint = {},
             const Context& context = {});

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of the matching stage. Lengths are in pixels of the resolution level that is matched,
-// angles in radians. A level is the reference image with its source images, all halved equally
-// often. The last level has the working resolution, and each coarser level has half the width and
-// height of the next finer level.
+// Options of matching, and of the filters for finished depth maps. Lengths are in pixels of the
+// resolution level that is matched, angles in radians. A level is the reference image with its
+// source images, all halved equally often. The last level has the working resolution, and each
+// coarser level has half the width and height of the next finer level.
 #pragma once
 
 #include <numbers>
-
-#include "depth/smoothness.h"
 
 namespace axial::depth {
 
@@ -20,6 +18,16 @@ enum class Warp {
 inline constexpr float radians(float degrees) {
   return degrees * std::numbers::pi_v<float> / 180.0f;
 }
+
+// The smoothness factor of a hypothesis (the paper's eq. 6). d_v is the distance of a neighbour's
+// point from the plane through the point X of the hypothesis.
+struct SmoothnessOptions {
+  float depth_sigma = 0.02f;  // standard deviation of d_v / |X|
+  float depth_bonus = 0.07f;  // largest reduction of the factor by d_v of one neighbour
+  // Standard deviation of the angle between the normals of hypothesis and neighbour [rad].
+  float normal_sigma = 13 * std::numbers::pi_v<float> / 180;
+  float normal_bonus = 0.0672f;  // largest reduction of the factor by one neighbour's normal
+};
 
 struct PatchMatchOptions {
   Warp warp = Warp::affine;
@@ -37,13 +45,13 @@ struct PatchMatchOptions {
   // corresponds to a standard deviation of half a grey level. OpenMVS's value of 4e-4 corresponds
   // to three times this deviation. With OpenMVS's value, nearly three quarters of the pixels are
   // lost on sand whose texture is as strong as the camera's noise. Depths of weak texture that the
-  // pixels around them do not confirm are removed later (weak_texture.h).
+  // pixels around them do not confirm are removed later.
   float min_texture = 3.6e-5f;
 
   SmoothnessOptions smoothness;
 
   // The cost of a plane is blended with the difference between the plane's depth and a prior
-  // depth (PlaneScore::cost in matcher.h). Usually, the prior is the depth of the coarser level.
+  // depth. Usually, the prior is the depth of the coarser level.
   // In a geometric pass, the prior is the current depth, and only textureless pixels have a
   // prior. The prior's weight is exp(-texture / prior_texture). The value 0.002 corresponds to a
   // standard deviation of 3 grey levels, which is two or three times a camera's noise. With
@@ -84,6 +92,18 @@ struct PatchMatchOptions {
 
   float geometric_weight = 0.25f;  // of the geometric-consistency term (eq. 7) in the cost
   float geometric_limit = 4.0f;    // largest value of this term before it is weighted
+};
+
+// The removal of small segments.
+struct SpeckleOptions {
+  float max_difference = 0.007f;  // relative depth step below which neighbours are connected
+  int min_pixels = 100;           // segments with fewer pixels are cleared
+};
+
+// The filling of small gaps.
+struct GapOptions {
+  int max_gap = 7;                // longest gap that is filled [px]
+  float max_difference = 0.025f;  // limit of the relative depth step over the gap
 };
 
 }  // namespace axial::depth
