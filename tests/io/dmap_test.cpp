@@ -10,6 +10,7 @@
 
 #include "base/atomic_file.h"
 #include "io/wrong_input.h"
+#include "refractive/flat_port_camera.h"
 
 namespace axial::io {
 namespace {
