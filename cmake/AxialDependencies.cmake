@@ -18,6 +18,7 @@ find_package(Boost REQUIRED COMPONENTS program_options)
 # SuiteSparse::CHOLMOD.
 find_package(Ceres REQUIRED COMPONENTS SuiteSparse)
 find_package(GDAL REQUIRED)
+find_package(pugixml REQUIRED)
 find_package(CGAL REQUIRED)
 # CGAL adds -frounding-math to all files of the targets that link it. Here only the files that include
 # CGAL get this option (axial_source_options), so that all other files keep the precompiled headers and

@@ -9,7 +9,7 @@ packages=(
   g++ cmake ninja-build git help2man
   libeigen3-dev libopencv-dev libjpeg-dev libpng-dev libtiff-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
   libnanoflann-dev libembree-dev libcgal-dev libmaxflow-dev libxxhash-dev libboost-dev libboost-program-options-dev
-  libstb-dev libtinygltf-dev libceres-dev libsuitesparse-dev libgdal-dev libsqlite3-dev
+  libstb-dev libtinygltf-dev libceres-dev libsuitesparse-dev libgdal-dev libpugixml-dev libsqlite3-dev
   # to build the page of ViewScene without npm
   esbuild libjs-three
   # to test

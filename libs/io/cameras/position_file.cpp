@@ -4,22 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/atomic_file.h"
 #include "private/bytes/text_reader.h"
 #include "private/cameras/position_parts.h"
 
 namespace axial::io {
 namespace {
-
-// The lines of the file. Spreadsheets on old systems end lines with a carriage return alone.
-std::string text_of(const std::filesystem::path& file) {
-  std::string text = read_file(file);
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
-    fail("{}: is UTF-16; save it as UTF-8", file.string());
-  if (text.find('\n') == std::string::npos) std::ranges::replace(text, '\r', '\n');
-  if (!text.ends_with('\n')) text += '\n';
-  return text;
-}
 
 // The rows of a file before their units are known.
 struct Rows {
@@ -28,7 +17,7 @@ struct Rows {
 };
 
 Rows read_rows(const std::filesystem::path& file, const IsImage& is_image) {
-  const std::string text = text_of(file);
+  const std::string text = read_table_text(file);
   TextReader reader(text, file.string());
   Rows found;
   int number = 0;

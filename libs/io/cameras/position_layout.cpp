@@ -11,112 +11,8 @@
 namespace axial::io {
 namespace {
 
-using Words = std::initializer_list<std::string_view>;
-
-bool has(Words words, std::string_view word) {
-  return std::ranges::find(words, word) != words.end();
-}
-
 bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
-}
-
-// The name of a column in plain words, and its unit.
-struct ColumnName {
-  std::string words;  // in small letters, one blank between two words
-  std::string unit;   // the text in brackets
-};
-
-ColumnName column_name(std::string_view field) {
-  ColumnName name;
-  std::string text = lower_case(std::string(field));
-  const std::size_t open = text.find_first_of("([");
-  if (open != std::string::npos) {
-    const std::size_t close = std::min(text.find_first_of(")]", open), text.size());
-    name.unit = trimmed(std::string_view(text).substr(open + 1, close - open - 1));
-    text = text.substr(0, open) + (close < text.size() ? text.substr(close + 1) : "");
-  }
-  for (char& c : text)
-    if (c == '_' || c == '-' || c == '.' || c == '"' || c == '#') c = ' ';
-  std::string_view rest = text;
-  for (std::string_view word = take_token(rest); !word.empty(); word = take_token(rest))
-    name.words += (name.words.empty() ? "" : " ") + std::string(word);
-  return name;
-}
-
-bool is_longitude(std::string_view word) {
-  return has({"longitude", "lon", "long", "lng", "gps longitude", "gpslongitude"}, word);
-}
-
-bool is_latitude(std::string_view word) {
-  return has({"latitude", "lat", "gps latitude", "gpslatitude"}, word);
-}
-
-Column coordinate(std::string_view word) {
-  if (is_longitude(word) ||
-      has({"x", "easting", "east", "e", "geo x", "pos x", "coordinate1"}, word))
-    return Column::x;
-  if (is_latitude(word) ||
-      has({"y", "northing", "north", "n", "geo y", "pos y", "coordinate2"}, word))
-    return Column::y;
-  if (has({"z", "altitude", "alt", "height", "elevation", "h", "up", "geo z", "pos z", "rl",
-           "gps altitude", "gpsaltitude"},
-          word))
-    return Column::z;
-  if (has({"depth"}, word)) return Column::depth;
-  return Column::other;
-}
-
-// A column such as "accuracy z" or "accuracy horz". Metashape's "x error" is a residual.
-Column accuracy(std::string_view words) {
-  std::string text(words);
-  std::ranges::replace(text, '/', ' ');
-  bool across = false, up = false;
-  std::string_view rest = text;
-  for (std::string_view word = take_token(rest); !word.empty(); word = take_token(rest)) {
-    const Column axis = coordinate(word);
-    if (axis == Column::x || axis == Column::y || has({"xy", "horz", "horizontal", "h"}, word))
-      across = true;
-    else if (axis == Column::z || has({"vert", "vertical", "v"}, word))
-      up = true;
-  }
-  if (across == up) return Column::sigma;
-  return across ? Column::sigma_across : Column::sigma_up;
-}
-
-Column column_of(const std::string& words) {
-  if (has({"label", "name", "image", "image name", "imagename", "filename", "file name", "file",
-           "photo", "photo name", "camera", "camera label", "picture", "sourcefile"},
-          words))
-    return Column::label;
-  for (const char* word : {"accuracy", "sigma", "std", "acc "})
-    if (contains(words, word))
-      return contains(words, "yaw") || contains(words, "deg") ? Column::other : accuracy(words);
-  for (const std::string_view part : split(words, '/'))
-    if (const Column column = coordinate(trimmed(part)); column != Column::other) return column;
-  return Column::other;
-}
-
-// Whether a name leaves no other meaning than degrees: "longitude", but not "x/longitude".
-bool means_degrees(const ColumnName& name) {
-  return is_longitude(name.words) || is_latitude(name.words) || name.unit.starts_with("deg") ||
-         name.unit == "decimal degrees" || name.unit == "°";
-}
-
-bool names_degrees(const std::string& words) {
-  return std::ranges::any_of(split(words, '/'), [](std::string_view part) {
-    return is_longitude(trimmed(part)) || is_latitude(trimmed(part));
-  });
-}
-
-// Whether a column states that its unit is the metre.
-bool means_metres(const ColumnName& name) {
-  return has({"m", "metre", "metres", "meter", "meters"}, name.unit);
-}
-
-bool is_known_unit(const std::string& unit) {
-  return has({"", "m", "metre", "metres", "meter", "meters", "°", "decimal degrees"}, unit) ||
-         unit.starts_with("deg");
 }
 
 bool is_plane(Column column) {
@@ -264,42 +160,6 @@ bool read_coordinate_system(std::string_view text, const std::string& where,
 }
 
 }  // namespace
-
-std::optional<std::string> take_quoted(std::string_view& text) {
-  std::string content;
-  for (std::size_t i = 1; i < text.size(); ++i) {
-    if (text[i] == '"') {
-      if (i + 1 == text.size() || text[i + 1] != '"') {
-        text.remove_prefix(i + 1);
-        return content;
-      }
-      ++i;
-    }
-    content += text[i];
-  }
-  return {};
-}
-
-std::optional<std::vector<std::string>> split_fields(std::string_view text, char delimiter) {
-  std::vector<std::string> fields;
-  std::string field;
-  bool quoted = false;
-  for (std::size_t i = 0; i <= text.size(); ++i) {
-    const bool end = i == text.size();
-    if (end || (!quoted && text[i] == delimiter)) {
-      if (quoted) return {};
-      fields.emplace_back(trimmed(field));
-      field.clear();
-    } else if (text[i] != '"' || (!quoted && !trimmed(field).empty())) {
-      field += text[i];
-    } else if (quoted && i + 1 < text.size() && text[i + 1] == '"') {
-      field += text[i++];
-    } else {
-      quoted = !quoted;
-    }
-  }
-  return fields;
-}
 
 bool read_layout_line(std::string_view text, const std::string& where, PositionLayout& layout) {
   if (text.size() == 5 && lower_case(std::string(text.substr(0, 4))) == "sep=") {

@@ -24,15 +24,6 @@ std::string_view take_last_token(std::string_view& text) {
   return token;
 }
 
-// A number, in which the decimal mark may be a comma.
-std::optional<double> number_in(std::string_view field) {
-  if (const auto value = parse_number<double>(field)) return value;
-  std::string text(field);
-  if (std::ranges::count(text, ',') != 1 || text.find('.') != std::string::npos) return {};
-  std::ranges::replace(text, ',', '.');
-  return parse_number<double>(text);
-}
-
 double finite(std::string_view field, const std::string& where) {
   const std::optional<double> value = number_in(field);
   if (!value) fail("{}: '{}' is not a number", where, field);

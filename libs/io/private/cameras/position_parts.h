@@ -11,13 +11,10 @@
 #include <vector>
 
 #include "io/cameras/position_file.h"
+#include "io/cameras/table_text.h"
 #include "private/only_for_io.h"
 
 namespace axial::io {
-
-// The meaning of a column. `depth` is positive downwards. The sigmas are standard deviations: of
-// all coordinates, of the two horizontal ones, of the height.
-enum class Column { other, label, x, y, z, depth, sigma, sigma_across, sigma_up };
 
 // The unit of the first two coordinates. `unknown`: no line states it.
 enum class PlaneUnit { unknown, metres, degrees };
@@ -30,14 +27,6 @@ struct PositionLayout {
       false;                // true: a line says that x is the longitude, if the unit is degrees
   std::string other_datum;  // degrees that do not belong to WGS 84 or an equal datum: its name
 };
-
-// Removes and returns the quoted text at the beginning of `text`, in which "" stands for one quote;
-// nothing if the quote is not closed. Precondition: the text begins with a quote.
-std::optional<std::string> take_quoted(std::string_view& text);
-
-// The fields of `text` between delimiters, without blanks around them. A field in double quotes may
-// contain delimiters; "" between the quotes stands for one quote. Nothing if a quote is not closed.
-std::optional<std::vector<std::string>> split_fields(std::string_view text, char delimiter);
 
 // Reads a line before the first position into `layout`. Returns whether the line has one of these
 // forms:

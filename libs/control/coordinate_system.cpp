@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "private/coordinate_system.h"
+
+#include <cpl_conv.h>
+#include <cpl_error.h>
+#include <cpl_string.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "base/file_extension.h"
+#include "base/parse_number.h"
+#include "base/split.h"
+
+namespace axial::control {
+namespace {
+
+// GDAL's messages are not printed while it exists.
+class QuietGdal {
+ public:
+  QuietGdal() { CPLPushErrorHandler(CPLQuietErrorHandler); }
+  ~QuietGdal() { CPLPopErrorHandler(); }
+  QuietGdal(const QuietGdal&) = delete;
+  QuietGdal& operator=(const QuietGdal&) = delete;
+};
+
+// "EPSG:32616" for "WGS84 UTM 16N", as OpenDroneMap writes it; other texts unchanged.
+std::string with_utm_as_code(const std::string& text) {
+  std::string words = lower_case(std::string(trimmed(text)));
+  for (const std::string_view start : {"wgs84 utm ", "wgs 84 utm ", "wgs84 / utm zone "}) {
+    if (!words.starts_with(start) || words.size() < start.size() + 2) continue;
+    const bool south = words.back() == 's';
+    words.pop_back();
+    const auto zone = parse_number<int>(trimmed(std::string_view(words).substr(start.size())));
+    if (zone && *zone >= 1 && *zone <= 60)
+      return "EPSG:" + std::to_string((south ? 32700 : 32600) + *zone);
+  }
+  if (words == "wgs84" || words == "wgs 84") return "EPSG:4326";
+  return text;
+}
+
+std::string wkt_of(OGRSpatialReferenceH system) {
+  char* text = nullptr;
+  OSRExportToWkt(system, &text);
+  const std::string wkt = text ? text : "";
+  CPLFree(text);
+  return wkt;
+}
+
+std::string name_of_system(OGRSpatialReferenceH system) {
+  if (OSRIsLocal(system)) return {};
+  OSRAutoIdentifyEPSG(system);
+  const char* authority = OSRGetAuthorityName(system, nullptr);
+  const char* code = OSRGetAuthorityCode(system, nullptr);
+  if (authority && code && std::string(authority) == "EPSG") return std::string("EPSG:") + code;
+  return wkt_of(system);
+}
+
+}  // namespace
+
+std::optional<CoordinateSystem> CoordinateSystem::from_text(const std::string& text) {
+  const QuietGdal quiet;
+  CoordinateSystem result;
+  result.system_ = {OSRNewSpatialReference(nullptr), [](void* system) {
+                      OSRDestroySpatialReference(static_cast<OGRSpatialReferenceH>(system));
+                    }};
+  std::string allow_network = "ALLOW_NETWORK_ACCESS=NO", allow_file = "ALLOW_FILE_ACCESS=NO";
+  std::array<char*, 3> options{allow_network.data(), allow_file.data(), nullptr};
+  const std::string definition = with_utm_as_code(text);
+  auto* const system = static_cast<OGRSpatialReferenceH>(result.system_.get());
+  if (definition.find('\0') != std::string::npos ||
+      OGRSpatialReference::FromHandle(system)->SetFromUserInput(definition.c_str(),
+                                                                 options.data()) != OGRERR_NONE)
+    return {};
+  OSRSetAxisMappingStrategy(system, OAMS_TRADITIONAL_GIS_ORDER);
+  result.name_ = name_of_system(system);
+  return result;
+}
+
+std::string CoordinateSystem::wkt() const {
+  return wkt_of(static_cast<OGRSpatialReferenceH>(system_.get()));
+}
+
+bool CoordinateSystem::is_local() const {
+  return OSRIsLocal(static_cast<OGRSpatialReferenceH>(system_.get())) != 0;
+}
+
+bool CoordinateSystem::is_geographic() const {
+  return OSRIsGeographic(static_cast<OGRSpatialReferenceH>(system_.get())) != 0;
+}
+
+bool CoordinateSystem::is_metric() const {
+  auto* const system = static_cast<OGRSpatialReferenceH>(system_.get());
+  return (OSRIsProjected(system) || OSRIsLocal(system)) &&
+         std::abs(OSRGetLinearUnits(system, nullptr) - 1) < 1e-12;
+}
+
+std::vector<Eigen::Vector2d> transformed(std::span<const Eigen::Vector2d> places,
+                                         const CoordinateSystem& from, const CoordinateSystem& to) {
+  const QuietGdal quiet;
+  std::vector<Eigen::Vector2d> result(places.begin(), places.end());
+  const auto destroy = [](OGRCoordinateTransformationH t) {
+    OCTDestroyCoordinateTransformation(t);
+  };
+  const std::unique_ptr<std::remove_pointer_t<OGRCoordinateTransformationH>, decltype(destroy)>
+      transformation(
+          OCTNewCoordinateTransformation(static_cast<OGRSpatialReferenceH>(from.system_.get()),
+                                         static_cast<OGRSpatialReferenceH>(to.system_.get())),
+          destroy);
+  for (Eigen::Vector2d& place : result) {
+    int works = 0;
+    if (transformation)
+      OCTTransformEx(transformation.get(), 1, &place.x(), &place.y(), nullptr, &works);
+    if (!works) place.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return result;
+}
+
+std::string utm_zone(double longitude, double latitude) {
+  const double turned = longitude - 360 * std::floor((longitude + 180) / 360);  // -180 to 180
+  const int zone = std::clamp(static_cast<int>(std::floor((turned + 180) / 6)) + 1, 1, 60);
+  return "EPSG:" + std::to_string((latitude < 0 ? 32700 : 32600) + zone);
+}
+
+}  // namespace axial::control

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "control/labels.h"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "base/error.h"
+#include "base/file_extension.h"
+#include "base/split.h"
+
+namespace axial::control {
+namespace {
+
+bool is_digit(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+bool is_bar(const Bar& bar, const std::string& name) {
+  const std::string key = label_key(name);
+  return key == label_key(bar.first) + "-" + label_key(bar.second) ||
+         key == label_key(bar.second) + "-" + label_key(bar.first) ||
+         key == label_key(bar.first + "-" + bar.second) ||
+         key == label_key(bar.second + "-" + bar.first);
+}
+
+// Calls use(item) for each point and each bar of this name. Returns whether there is one.
+template <class AnyControl, class Use>
+bool for_each_named(AnyControl& control, const std::string& name, Use use) {
+  bool found = false;
+  for (auto& point : control.points)
+    if (same_label(point.label, name)) use(point), found = true;
+  for (auto& bar : control.bars)
+    if (is_bar(bar, name)) use(bar), found = true;
+  return found;
+}
+
+}  // namespace
+
+std::string label_key(std::string_view label) {
+  std::string key;
+  bool in_number = false;
+  for (std::size_t i = 0; i < label.size(); ++i) {
+    const char c = label[i];
+    if (kBlanks.find(c) != std::string_view::npos || c == '_') continue;
+    const bool leads = c == '0' && !in_number && i + 1 < label.size() && is_digit(label[i + 1]);
+    if (leads) continue;
+    in_number = is_digit(c);
+    key += c;
+  }
+  key = lower_case(std::move(key));
+  if (!key.empty() && std::ranges::all_of(key, is_digit)) key = "target" + key;
+  return key;
+}
+
+bool same_label(std::string_view first, std::string_view second) {
+  return label_key(first) == label_key(second);
+}
+
+std::string name_of(const Bar& bar) {
+  return bar.first + "-" + bar.second;
+}
+
+void mark_checks(Control& control, std::span<const std::string> names) {
+  for (const std::string& name : names)
+    if (!for_each_named(std::as_const(control), name, [](const auto&) {}))
+      fail("check '{}': there is no control point and no bar of this name", name);
+  for (const std::string& name : names)
+    for_each_named(control, name, [](auto& item) { item.check = true; });
+}
+
+}  // namespace axial::control

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reads files of targets, scale bars and control points. Start here to read libs/control.
+#pragma once
+
+#include <filesystem>
+
+#include "control/control.h"
+
+namespace axial::control {
+
+// The part of a file that the caller needs.
+enum class Role { any, images, points, bars };
+
+struct ControlReading {
+  // Error if the file has none of this.
+  Role role = Role::any;
+  // The code of the projected system, with metres as unit, to which coordinates are transformed; 0:
+  // none is given. Degrees then go to the UTM zone of their mean, and coordinates in metres stay.
+  int epsg = 0;
+  // Standard deviations [m] where a file states none, or 0.
+  double point_sigma = 0.01;
+  double bar_sigma = 0.0005;
+};
+
+// Reads a file, whose format is found by its content (docs/formats.md, "Control"):
+//
+// 1. Our JSON: targets.json of FindTargets, and files with points and bars.
+// 2. gcp_list.txt of OpenDroneMap: observations and points. A point without a name is called
+//    "point N", where N counts the different coordinates from 1.
+// 3. Metashape's XML of markers, also inside a project: observations, points and scale bars. A
+//    projection that is not pinned is no observation; a reference that is not enabled is a check.
+// 4. Metashape's reference as CSV, and ReefShape's control: tables whose header names the columns.
+// 5. ReefShape's scale bars: TARGET,TARGET,LENGTH[,ACCURACY[,check]].
+//
+// Longitude and latitude become metres by GDAL. Heights are not transformed. A number that is empty
+// or NaN is not known. Depths of a file are below the surface if they are positive (z = -depth),
+// and are heights if they are negative; a note says which. `Control::crs` is "EPSG:N", or the
+// definition of the system if it has no code.
+//
+// Error of one line, which names the file, the line or the entry, and the label, for a file that
+// cannot be read or is none of these; a file that lacks the part of `role`; a label that has two
+// places, or two targets that have two distances; numbers that are not finite, lengths and standard
+// deviations that are not positive, depths of both signs; a column that is missing; a system that
+// PROJ does not know, and one in another unit than degrees or metres unless `epsg` is given. Labels
+// of bars need not be those of points or observations.
+Control read_control(const std::filesystem::path& file, const ControlReading& options);
+
+}  // namespace axial::control

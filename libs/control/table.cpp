@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tables: ReefShape's scale bars and control, Metashape's reference.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/file_extension.h"
+#include "base/split.h"
+#include "io/cameras/table_text.h"
+#include "private/readers.h"
+#include "private/stated_points.h"
+
+namespace axial::control {
+namespace {
+
+using Fields = std::vector<std::string>;
+
+enum class Meaning {
+  other,
+  label,
+  x,
+  y,
+  z,
+  depth,
+  sigma,
+  sigma_xy,
+  sigma_x,
+  sigma_y,
+  sigma_z,
+  check,
+  enabled
+};
+
+// Names that positions of photographs do not have.
+constexpr std::array<std::pair<std::string_view, Meaning>, 22> kNames{{
+    {"marker", Meaning::label},       {"target", Meaning::label},
+    {"point", Meaning::label},        {"gcp", Meaning::label},
+    {"id", Meaning::label},           {"acc", Meaning::sigma},
+    {"xyacc", Meaning::sigma_xy},     {"xy acc", Meaning::sigma_xy},
+    {"xacc", Meaning::sigma_x},       {"accuracy x", Meaning::sigma_x},
+    {"sigma x", Meaning::sigma_x},    {"yacc", Meaning::sigma_y},
+    {"accuracy y", Meaning::sigma_y}, {"sigma y", Meaning::sigma_y},
+    {"zacc", Meaning::sigma_z},       {"z acc", Meaning::sigma_z},
+    {"check", Meaning::check},        {"check point", Meaning::check},
+    {"checkpoint", Meaning::check},   {"enabled", Meaning::enabled},
+    {"enable", Meaning::enabled},     {"enabled flag", Meaning::enabled},
+}};
+
+Meaning meaning_of_position(const std::string& words) {
+  switch (io::column_of(words)) {
+    case io::Column::label:
+      return Meaning::label;
+    case io::Column::x:
+      return Meaning::x;
+    case io::Column::y:
+      return Meaning::y;
+    case io::Column::z:
+      return Meaning::z;
+    case io::Column::depth:
+      return Meaning::depth;
+    case io::Column::sigma:
+      return Meaning::sigma;
+    case io::Column::sigma_across:
+      return Meaning::sigma_xy;
+    case io::Column::sigma_up:
+      return Meaning::sigma_z;
+    case io::Column::other:
+      break;
+  }
+  return Meaning::other;
+}
+
+Meaning meaning_of(std::string words) {
+  for (const std::string_view of_plate : {"gis ", "marker ", "target ", "gcp "})
+    if (words.starts_with(of_plate)) words.erase(0, of_plate.size());
+  const auto* const found =
+      std::ranges::find(kNames, words, &std::pair<std::string_view, Meaning>::first);
+  return found != kNames.end() ? found->second : meaning_of_position(words);
+}
+
+struct Header {
+  char delimiter = 0;
+  std::vector<Meaning> columns;
+  bool degrees = false;
+
+  bool has(Meaning meaning) const { return std::ranges::find(columns, meaning) != columns.end(); }
+};
+
+Header header_of(const Fields& fields, char delimiter, const std::string& where) {
+  Header header{delimiter, {}, false};
+  for (const std::string& field : fields) {
+    const io::ColumnName name = io::column_name(field);
+    Meaning meaning = meaning_of(name.words);
+    if (meaning != Meaning::check && meaning != Meaning::enabled && header.has(meaning))
+      meaning = Meaning::other;
+    const bool is_place = meaning == Meaning::x || meaning == Meaning::y || meaning == Meaning::z ||
+                          meaning == Meaning::depth;
+    if (is_place && !io::is_known_unit(name.unit))
+      fail("{}: column '{}' is in '{}', but must be in metres or degrees", where, name.words,
+           name.unit);
+    header.degrees |= is_place && (io::means_degrees(name) || io::names_degrees(name.words));
+    header.columns.push_back(meaning);
+  }
+  return header;
+}
+
+// The delimiter that gives most fields.
+char delimiter_of(std::string_view line) {
+  char best = ',';
+  for (const char delimiter : {';', '\t'})
+    if (std::ranges::count(line, delimiter) > std::ranges::count(line, best)) best = delimiter;
+  return best;
+}
+
+// A line of the file that is neither empty nor a comment.
+struct Line {
+  std::string_view text;
+  std::string where;
+};
+
+struct Table {
+  std::vector<Line> lines;    // without the header
+  std::optional<Line> crs;    // the text behind "CoordinateSystem:"
+  std::optional<Line> names;  // the last comment before the first line, as Metashape writes it
+};
+
+Table table_of(const std::string& text, const std::string& file) {
+  Table table;
+  int number = 0;
+  for (std::string_view line : split(text, '\n')) {
+    const std::string where = fmt::format("{}:{}", file, ++number);
+    line = trimmed(line);
+    if (line.empty()) continue;
+    if (!line.starts_with('#')) {
+      table.lines.push_back({line, where});
+      continue;
+    }
+    constexpr std::string_view kSystem = "coordinatesystem:";
+    const std::size_t at = lower_case(std::string(line)).find(kSystem);
+    if (at != std::string::npos)
+      table.crs = {trimmed(line.substr(at + kSystem.size())), where};
+    else if (table.lines.empty())
+      table.names = {line.substr(1), where};
+  }
+  return table;
+}
+
+Fields fields_of(const Line& line, char delimiter) {
+  auto fields = io::split_fields(line.text, delimiter);
+  if (!fields) fail("{}: a quote is not closed", line.where);
+  return *std::move(fields);
+}
+
+std::optional<Header> header_in(const Line& line) {
+  const char delimiter = delimiter_of(line.text);
+  const auto fields = io::split_fields(line.text, delimiter);
+  const auto is_number = [](const std::string& field) { return io::number_in(field).has_value(); };
+  if (!fields || std::ranges::any_of(*fields, is_number)) return {};
+  Header header = header_of(*fields, delimiter, line.where);
+  if (!header.has(Meaning::label)) return {};
+  return header;
+}
+
+void require_columns(const Header& header, const std::string& where) {
+  for (const auto& [meaning, name] :
+       {std::pair{Meaning::x, "x, easting or longitude"}, {Meaning::y, "y, northing or latitude"}})
+    if (!header.has(meaning)) fail("{}: the header has no column {}", where, name);
+  if (!header.has(Meaning::z) && !header.has(Meaning::depth))
+    fail("{}: the header has no column z, altitude or depth", where);
+}
+
+// An empty field is no number: NaN.
+double number_or_none(const std::string& field, const std::string& where) {
+  if (field.empty()) return kNoNumber;
+  const auto number = io::number_in(field);
+  if (!number) fail("{}: '{}' is not a number", where, field);
+  return *number;
+}
+
+double sigma_in(const std::string& field, const std::string& where) {
+  const double sigma = number_or_none(field, where);
+  return std::isnan(sigma) ? 0 : sigma;
+}
+
+bool flag_in(const std::string& field, const std::string& where) {
+  const std::string word = lower_case(field);
+  if (word.empty() || word == "0" || word == "false" || word == "no") return false;
+  if (word == "1" || word == "true" || word == "yes" || word == "check") return true;
+  fail("{}: '{}' is neither true nor false", where, field);
+}
+
+void take_field(const std::string& field, Meaning meaning, StatedPoint& point) {
+  const std::string at = point.label.empty() ? point.where : point.where + ": " + point.label;
+  switch (meaning) {
+    case Meaning::x:
+    case Meaning::y:
+      point.place[meaning == Meaning::x ? 0 : 1] = number_or_none(field, at);
+      break;
+    case Meaning::z:
+    case Meaning::depth:
+      point.place.z() = number_or_none(field, at);
+      point.is_depth = meaning == Meaning::depth;
+      break;
+    case Meaning::sigma:
+      point.sigma.setConstant(sigma_in(field, at));
+      break;
+    case Meaning::sigma_xy:
+      point.sigma.head<2>().setConstant(sigma_in(field, at));
+      break;
+    case Meaning::sigma_x:
+      point.sigma.x() = sigma_in(field, at);
+      break;
+    case Meaning::sigma_y:
+      point.sigma.y() = sigma_in(field, at);
+      break;
+    case Meaning::sigma_z:
+      point.sigma.z() = sigma_in(field, at);
+      break;
+    case Meaning::check:
+      point.check |= flag_in(field, at);
+      break;
+    case Meaning::enabled:
+      point.check |= !field.empty() && !flag_in(field, at);
+      break;
+    case Meaning::label:
+    case Meaning::other:
+      break;
+  }
+}
+
+// A bare number is that of a circular target.
+std::string full_label(const std::string& label) {
+  const bool is_number =
+      !label.empty() && std::ranges::all_of(label, [](char c) { return c >= '0' && c <= '9'; });
+  return is_number ? "target " + label : label;
+}
+
+StatedPoint point_in(const Line& line, const Header& header) {
+  Fields fields = fields_of(line, header.delimiter);
+  while (fields.size() > header.columns.size() && fields.back().empty()) fields.pop_back();
+  if (fields.size() > header.columns.size())
+    fail("{}: has {} fields, but the header names {} columns", line.where, fields.size(),
+         header.columns.size());
+  StatedPoint point;
+  point.where = line.where;
+  const auto label = std::ranges::find(header.columns, Meaning::label) - header.columns.begin();
+  if (static_cast<std::size_t>(label) < fields.size())
+    point.label = full_label(fields[static_cast<std::size_t>(label)]);
+  // One accuracy for all coordinates comes first, so that those of single coordinates replace it.
+  for (const bool of_all : {true, false})
+    for (std::size_t i = 0; i < fields.size(); ++i)
+      if ((header.columns[i] == Meaning::sigma) == of_all)
+        take_field(fields[i], header.columns[i], point);
+  return point;
+}
+
+Control read_points(const Table& table, const Header& header, const std::filesystem::path& file,
+                    const ControlReading& options) {
+  StatedPoints stated;
+  stated.degrees = header.degrees;
+  if (table.crs) {
+    stated.crs = table.crs->text;
+    stated.crs_where = table.crs->where;
+  }
+  for (const Line& line : table.lines) {
+    StatedPoint point = point_in(line, header);
+    if (point.place.array().isNaN().all()) continue;  // such as markers without a reference
+    stated.points.push_back(std::move(point));
+  }
+  Control control;
+  add_points(std::move(stated), file, options, control);
+  return control;
+}
+
+bool is_bar(const Fields& fields) {
+  return fields.size() >= 3 && fields.size() <= 5 && io::number_in(fields[2]);
+}
+
+Bar bar_in(const Line& line) {
+  const char delimiter = delimiter_of(line.text);
+  const Fields fields = fields_of(line, delimiter);
+  if (!is_bar(fields)) fail("{}: must be TARGET,TARGET,LENGTH[,ACCURACY[,check]]", line.where);
+  Bar bar{full_label(fields[0]),
+          full_label(fields[1]),
+          *io::number_in(fields[2]),
+          0,
+          false,
+          line.where};
+  if (fields.size() > 3) bar.sigma = sigma_in(fields[3], line.where);
+  if (fields.size() > 4) bar.check = flag_in(fields[4], line.where);
+  return bar;
+}
+
+// Some users write names above ReefShape's columns.
+bool names_length(const Line& line) {
+  const Fields fields = fields_of(line, delimiter_of(line.text));
+  if (fields.size() < 3) return false;
+  const std::string word = io::column_name(fields[2]).words;
+  return word == "length" || word == "distance";
+}
+
+Control read_bars(const Table& table, const ControlReading& options) {
+  Control control;
+  for (std::size_t i = 0; i < table.lines.size(); ++i)
+    if (i > 0 || !names_length(table.lines[i])) add_bar(bar_in(table.lines[i]), options, control);
+  return control;
+}
+
+}  // namespace
+
+Control read_table(const std::string& text, const std::filesystem::path& file,
+                   const ControlReading& options) {
+  Table table = table_of(text, file.string());
+  if (table.names)
+    if (const auto header = header_in(*table.names); header && header->has(Meaning::x)) {
+      require_columns(*header, table.names->where);
+      return read_points(table, *header, file, options);
+    }
+  if (table.lines.empty()) fail("{}: has no points and no bars", file.string());
+  const Line first = table.lines.front();
+  const auto header = header_in(first);
+  const bool is_points = header && !names_length(first);
+  if (!is_points && (options.role != Role::points)) return read_bars(table, options);
+  if (!is_points)
+    fail("{}: must be a header that names the columns, such as label,x,y,z,accuracy", first.where);
+  require_columns(*header, first.where);
+  table.lines.erase(table.lines.begin());
+  return read_points(table, *header, file, options);
+}
+
+}  // namespace axial::control
