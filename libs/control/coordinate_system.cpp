@@ -74,7 +74,7 @@ std::optional<CoordinateSystem> CoordinateSystem::from_text(const std::string& t
   auto* const system = static_cast<OGRSpatialReferenceH>(result.system_.get());
   if (definition.find('\0') != std::string::npos ||
       OGRSpatialReference::FromHandle(system)->SetFromUserInput(definition.c_str(),
-                                                                 options.data()) != OGRERR_NONE)
+                                                                options.data()) != OGRERR_NONE)
     return {};
   OSRSetAxisMappingStrategy(system, OAMS_TRADITIONAL_GIS_ORDER);
   result.name_ = name_of_system(system);

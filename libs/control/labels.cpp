@@ -16,12 +16,14 @@ bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-bool is_bar(const Bar& bar, const std::string& name) {
-  const std::string key = label_key(name);
-  return key == label_key(bar.first) + "-" + label_key(bar.second) ||
-         key == label_key(bar.second) + "-" + label_key(bar.first) ||
-         key == label_key(bar.first + "-" + bar.second) ||
-         key == label_key(bar.second + "-" + bar.first);
+// Labels may contain hyphens, too.
+bool is_bar(const Bar& bar, std::string_view name) {
+  for (std::size_t at = name.find('-'); at != std::string_view::npos; at = name.find('-', at + 1)) {
+    const std::string_view first = name.substr(0, at), second = name.substr(at + 1);
+    if (same_label(bar.first, first) && same_label(bar.second, second)) return true;
+    if (same_label(bar.first, second) && same_label(bar.second, first)) return true;
+  }
+  return false;
 }
 
 // Calls use(item) for each point and each bar of this name. Returns whether there is one.

@@ -76,9 +76,14 @@ Meaning meaning_of_position(const std::string& words) {
   return Meaning::other;
 }
 
-Meaning meaning_of(std::string words) {
+// "label" for "gis label".
+std::string without_prefix(std::string words) {
   for (const std::string_view of_plate : {"gis ", "marker ", "target ", "gcp "})
     if (words.starts_with(of_plate)) words.erase(0, of_plate.size());
+  return words;
+}
+
+Meaning meaning_of(const std::string& words) {
   const auto* const found =
       std::ranges::find(kNames, words, &std::pair<std::string_view, Meaning>::first);
   return found != kNames.end() ? found->second : meaning_of_position(words);
@@ -95,7 +100,8 @@ struct Header {
 Header header_of(const Fields& fields, char delimiter, const std::string& where) {
   Header header{delimiter, {}, false};
   for (const std::string& field : fields) {
-    const io::ColumnName name = io::column_name(field);
+    io::ColumnName name = io::column_name(field);
+    name.words = without_prefix(std::move(name.words));
     Meaning meaning = meaning_of(name.words);
     if (meaning != Meaning::check && meaning != Meaning::enabled && header.has(meaning))
       meaning = Meaning::other;
