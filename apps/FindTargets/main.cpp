@@ -7,6 +7,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "base/atomic_file.h"
 #include "base/context.h"
@@ -23,6 +24,7 @@
 #include "targets/find_targets.h"
 #include "targets/print.h"
 #include "targets/targets_file.h"
+#include "targets_output.h"
 
 namespace axial::apps {
 namespace {
@@ -134,8 +136,9 @@ int run(int argc, char** argv) {
   const Context context = program_context(options.parsed);
   const std::vector<NamedPhotograph> photographs = photographs_of(options.input);
   check_outputs(options, photographs);
+  control::Control known = read_known(options);
   const std::vector<targets::Photograph> found = find_all(photographs, options, context);
-  targets::write_targets(options.output, options.families, found);
+  write_output(options, found, std::move(known));
   if (!options.pictures.empty()) write_all_pictures(options.pictures, photographs, found);
   report(found);
   log_info("Targets in {}", options.output.string());

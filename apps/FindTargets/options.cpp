@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "base/parse_number.h"
 #include "base/same_file.h"
 #include "base/split.h"
@@ -56,8 +57,16 @@ void declare(OptionList& list, Options& options) {
   list.add("input-file,i", &options.input,
            "photographs: a folder, with its subfolders, or a file; may be given several times")
       .add("output-file,o", &options.output,
-           "file to write: targets with image, x, y and sigma [px] (.json)")
+           "file to write: targets with image, x, y and sigma [px] (.json); OpenDroneMap's "
+           "gcp_list.txt (.txt), which needs --control; Metashape's markers (.xml)")
       .output_file()
+      .add("control", &options.control,
+           "points and scale bars whose places and lengths are known, for .txt and .xml: a file of "
+           "ReefShape, Metashape or OpenDroneMap, or JSON; may be given several times")
+      .add_with_default("epsg", &options.epsg,
+                        "EPSG code of the projected system, in metres, for the points of --control "
+                        "(0: the system that the file states, or UTM for longitude and latitude)")
+      .zero_or(1024, 999'999)
       .add_text_with_default(
           "families", kFamilies,
           [&](const std::string& text) { options.families = targets::parse_families(text); },
@@ -93,10 +102,23 @@ void require_different_targets(const Options& options) {
     fail("--print: target {} would be drawn twice; each number must be on one plate only", *same);
 }
 
+void check_control(const Options& options) {
+  const bool holds_control = format_of(options.output) != OutputFormat::json;
+  if (!options.control.empty() && !holds_control)
+    fail("--control: is for an output file .txt or .xml, but --output-file is {}",
+         options.output.string());
+  if (options.control.empty() && given(options.parsed, "epsg"))
+    fail("--epsg: needs --control, the file of points");
+  if (options.control.empty() && format_of(options.output) == OutputFormat::gcp_list)
+    fail("--output-file {}: gcp_list.txt needs --control, the places of the targets",
+         options.output.string());
+  require_not_an_input(options.output, options.control, "--output-file");
+}
+
 void check(const Options& options) {
   if (!options.print.empty()) {
     if (!options.input.empty()) fail("--print: draws plates and reads no photographs");
-    for (const char* of_photographs : {"output-file", "pictures"})
+    for (const char* of_photographs : {"output-file", "pictures", "control", "epsg"})
       if (given(options.parsed, of_photographs))
         fail("--{}: is for photographs, but --print draws plates and stops", of_photographs);
     require_different_targets(options);
@@ -111,9 +133,16 @@ void check(const Options& options) {
   if (given(options.parsed, "side")) fail("--side: needs --print, the folder for the drawings");
   if (options.output.empty()) fail("--output-file is required");
   require_not_an_input(options.output, options.input, "--output-file");
+  check_control(options);
 }
 
 }  // namespace
+
+OutputFormat format_of(const std::filesystem::path& output) {
+  const std::string extension = lower_extension(output);
+  if (extension == ".txt") return OutputFormat::gcp_list;
+  return extension == ".xml" ? OutputFormat::markers : OutputFormat::json;
+}
 
 Options parse_command_line(int argc, const char* const* argv) {
   Options options;

@@ -20,8 +20,7 @@ bool is_digit(char c) {
 bool is_bar(const Bar& bar, std::string_view name) {
   for (std::size_t at = name.find('-'); at != std::string_view::npos; at = name.find('-', at + 1)) {
     const std::string_view first = name.substr(0, at), second = name.substr(at + 1);
-    if (same_label(bar.first, first) && same_label(bar.second, second)) return true;
-    if (same_label(bar.first, second) && same_label(bar.second, first)) return true;
+    if (same_targets(bar, {std::string(first), std::string(second), 0, 0, false, {}})) return true;
   }
   return false;
 }
@@ -57,6 +56,11 @@ std::string label_key(std::string_view label) {
 
 bool same_label(std::string_view first, std::string_view second) {
   return label_key(first) == label_key(second);
+}
+
+bool same_targets(const Bar& a, const Bar& b) {
+  return (same_label(a.first, b.first) && same_label(a.second, b.second)) ||
+         (same_label(a.first, b.second) && same_label(a.second, b.first));
 }
 
 std::string name_of(const Bar& bar) {

@@ -16,6 +16,9 @@ namespace axial::control {
 std::string label_key(std::string_view label);
 bool same_label(std::string_view first, std::string_view second);
 
+// Whether both bars are between the same targets, in either order.
+bool same_targets(const Bar& a, const Bar& b);
+
 // The words for a bar in messages, and its name in mark_checks(): "target 1-target 2".
 std::string name_of(const Bar& bar);
 

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "control/read_control.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "base/byte_order_mark.h"
 #include "base/error.h"
 #include "base/split.h"
+#include "control/labels.h"
 #include "io/cameras/table_text.h"
 #include "private/readers.h"
 
@@ -41,7 +45,50 @@ void require_role(const Control& control, Role role, const std::filesystem::path
   if (role == Role::bars) require(!control.bars.empty(), "scale bars");
 }
 
+bool same_thing(const ControlPoint& a, const ControlPoint& b) {
+  return same_label(a.label, b.label);
+}
+
+bool same_thing(const Bar& a, const Bar& b) {
+  return same_targets(a, b);
+}
+
+bool same_numbers(const ControlPoint& a, const ControlPoint& b) {
+  return a.metres == b.metres && a.sigma == b.sigma;
+}
+
+bool same_numbers(const Bar& a, const Bar& b) {
+  return a.metres == b.metres && a.sigma == b.sigma;
+}
+
+const std::string& name_of(const ControlPoint& point) {
+  return point.label;
+}
+
+template <class Item>
+void append_new(std::vector<Item>& items, const std::vector<Item>& more) {
+  for (const Item& item : more) {
+    const auto known =
+        std::ranges::find_if(items, [&](const Item& other) { return same_thing(item, other); });
+    if (known == items.end())
+      items.push_back(item);
+    else if (!same_numbers(item, *known))
+      fail("{}: {} has other numbers than at {}", item.where, name_of(item), known->where);
+  }
+}
+
 }  // namespace
+
+void append(Control& control, Control more) {
+  if (!control.points.empty() && !more.points.empty() && control.crs != more.crs)
+    fail("{}: the points are in the system '{}', but those of {} are in '{}'",
+         more.points.front().where, more.crs, control.points.front().where, control.crs);
+  if (!more.points.empty()) control.crs = more.crs;
+  append_new(control.points, more.points);
+  append_new(control.bars, more.bars);
+  std::ranges::move(more.images, std::back_inserter(control.images));
+  std::ranges::move(more.notes, std::back_inserter(control.notes));
+}
 
 Control read_control(const std::filesystem::path& file, const ControlReading& options) {
   Control control = read_any(file, options);

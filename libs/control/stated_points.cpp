@@ -187,11 +187,6 @@ bool lacks_sigma(const StatedPoint& point) {
   return false;
 }
 
-bool same_bar(const Bar& a, const Bar& b) {
-  return (same_label(a.first, b.first) && same_label(a.second, b.second)) ||
-         (same_label(a.first, b.second) && same_label(a.second, b.first));
-}
-
 }  // namespace
 
 double finite(double value, const std::string& where, const std::string& field) {
@@ -223,7 +218,7 @@ void add_bar(Bar bar, const ControlReading& options, Control& control) {
     fail("{}: {}: the accuracy {} m must be above 0", bar.where, name, bar.sigma);
   if (bar.sigma == 0) bar.sigma = options.bar_sigma;
   for (const Bar& other : control.bars) {
-    if (!same_bar(bar, other)) continue;
+    if (!same_targets(bar, other)) continue;
     if (other.metres == bar.metres && other.sigma == bar.sigma) return;
     fail("{}: {} has another length or accuracy than at {}", bar.where, name, other.where);
   }

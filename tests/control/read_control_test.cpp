@@ -250,5 +250,19 @@ TEST_F(ReadControl, SameLineTwiceIsOnePoint) {
   EXPECT_EQ(read("bars.csv", "1,2,0.5,0.01\n2,1,0.5,0.01\n").bars.size(), 1u);
 }
 
+TEST_F(ReadControl, SeveralFilesAreOneControl) {
+  Control control = read("a.csv", "label,x,y,z\n1,500000,2500000,-3\n", {.epsg = 32617});
+  append(control, read("bars.txt", "1,2,0.5\n"));
+  append(control,
+         read("b.csv", "label,x,y,z\n1,500000,2500000,-3\n2,500000,2500001,-3\n", {.epsg = 32617}));
+  EXPECT_EQ(control.crs, "EPSG:32617");
+  EXPECT_EQ(control.points.size(), 2u);
+  EXPECT_EQ(control.bars.size(), 1u);
+  EXPECT_THAT(test::error_of([&] { append(control, read("c.csv", "label,x,y,z\n3,1,2,3\n")); }),
+              HasSubstr("c.csv:2: the points are in the system ''"));
+  EXPECT_THAT(test::error_of([&] { append(control, read("c.txt", "1,2,0.6\n")); }),
+              HasSubstr("c.txt:1: target 1-target 2 has other numbers than at"));
+}
+
 }  // namespace
 }  // namespace axial::control

@@ -31,8 +31,8 @@ namespace {
 
 std::vector<Reader> all_readers() {
   std::vector<Reader> all;
-  for (const auto& group : {camera_readers(), colmap_readers(), dmap_readers(), image_readers(),
-                            mvs_readers(), ply_readers(), text_readers()})
+  for (const auto& group : {camera_readers(), colmap_readers(), control_readers(), dmap_readers(),
+                            image_readers(), mvs_readers(), ply_readers(), text_readers()})
     all.insert(all.end(), group.begin(), group.end());
   return all;
 }

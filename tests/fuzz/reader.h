@@ -30,6 +30,7 @@ struct Reader {
 // The readers in groups, by format.
 std::span<const Reader> camera_readers();
 std::span<const Reader> colmap_readers();
+std::span<const Reader> control_readers();
 std::span<const Reader> dmap_readers();
 std::span<const Reader> image_readers();
 std::span<const Reader> mvs_readers();

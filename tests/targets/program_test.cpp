@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
 
 #include "base/atomic_file.h"
 #include "io/bytes/json.h"
@@ -86,6 +87,30 @@ TEST_F(FindTargets, TheSameBytesForAnyNumberOfThreads) {
   EXPECT_TRUE(read_file(folder_ / "one.json") == read_file(folder_ / "two.json"));
 }
 
+TEST_F(FindTargets, WritesFilesOfOtherPrograms) {
+  write("dive/1.png", "circular12", 7, {101.25, 90.5});
+  write("dive/2.png", "circular12", 8, {130.5, 100.75});
+  write_atomically(folder_ / "plates.csv", "label,x,y,z\n7,500000,2500000,-3\n");
+  write_atomically(folder_ / "bars.txt", "7,8,0.5\n");
+  succeed_in("FindTargets", "dive -o gcp.txt --control plates.csv --epsg 32617");
+  std::istringstream list(read_file(folder_ / "gcp.txt"));
+  std::string system, image, label;
+  double x = 0, y = 0, z = 0, column = 0, row = 0;
+  ASSERT_TRUE(list >> system >> x >> y >> z >> column >> row >> image >> label);
+  EXPECT_EQ(system, "EPSG:32617");
+  EXPECT_EQ(z, -3);
+  EXPECT_NEAR(column, 101.25, 0.05);
+  EXPECT_NEAR(row, 90.5, 0.05);
+  EXPECT_EQ(image, "1.png");
+  EXPECT_EQ(label, "target_7");
+  EXPECT_FALSE(list >> label);  // target 8 has no place
+  succeed_in("FindTargets", "dive -o markers.xml --control plates.csv --control bars.txt");
+  const std::string markers = read_file(folder_ / "markers.xml");
+  EXPECT_THAT(markers, HasSubstr("label=\"target 8\""));
+  EXPECT_THAT(markers, HasSubstr("distance=\"0.5\""));
+  EXPECT_THAT(markers, HasSubstr("z=\"-3\""));
+}
+
 TEST_F(FindTargets, WrongInputIsRefusedInOneLine) {
   write("dive/1.png", "circular12", 7, {100, 100});
   write_atomically(folder_ / "dive/2.png", "no image");
@@ -100,6 +125,10 @@ TEST_F(FindTargets, WrongInputIsRefusedInOneLine) {
   refuses("more -o more/1.png", "--output-file");
   refuses("more -o out.json --pictures more/pictures", "lies in the folder of the photographs");
   refuses("more -o out.json --side 0.2", "--side: needs --print");
+  refuses("more -o out.txt", "--output-file");
+  refuses("more -o out.json --control absent", "--control: is for an output file .txt or .xml");
+  refuses("more -o out.xml --control absent", "absent");
+  refuses("more -o out.xml --epsg 32617", "--epsg: needs --control");
   refuses("more -o out.json --max-memory 20", "--max-memory");
   refuses("more -o out.json --families ''", "names no family");
   refuses("--print plates --plates 18446744073709551615 --families circular12", "is not a range");
