@@ -51,12 +51,26 @@ std::string wkt_of(OGRSpatialReferenceH system) {
   return wkt;
 }
 
+using SystemPtr = std::unique_ptr<std::remove_pointer_t<OGRSpatialReferenceH>,
+                                  decltype(&OSRDestroySpatialReference)>;
+
+// Whether the system of this code is `system`. A text may state the code of another system.
+bool is_of_code(OGRSpatialReferenceH system, int code) {
+  const SystemPtr known(OSRNewSpatialReference(nullptr), &OSRDestroySpatialReference);
+  if (OSRImportFromEPSG(known.get(), code) != OGRERR_NONE) return false;
+  constexpr std::array<const char*, 3> kOptions{
+      "CRITERION=EQUIVALENT", "IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
+  return OSRIsSameEx(system, known.get(), kOptions.data()) != 0;
+}
+
 std::string name_of_system(OGRSpatialReferenceH system) {
   if (OSRIsLocal(system)) return {};
   OSRAutoIdentifyEPSG(system);
   const char* authority = OSRGetAuthorityName(system, nullptr);
-  const char* code = OSRGetAuthorityCode(system, nullptr);
-  if (authority && code && std::string(authority) == "EPSG") return std::string("EPSG:") + code;
+  const char* text = OSRGetAuthorityCode(system, nullptr);
+  const auto code = text ? parse_number<int>(text) : std::nullopt;
+  if (authority && code && std::string(authority) == "EPSG" && is_of_code(system, *code))
+    return std::string("EPSG:") + text;
   return wkt_of(system);
 }
 
