@@ -9,6 +9,7 @@
 #include "base/same_file.h"
 #include "base/split.h"
 #include "base/version.h"
+#include "targets/target_table.h"
 
 namespace axial::apps {
 namespace {
@@ -52,6 +53,20 @@ std::vector<Bar> bars_of(const std::string& text) {
   return bars;
 }
 
+void declare_print(OptionList& list, Options& options) {
+  list.add("print", &options.print,
+           "draw plates and bars to scale into this folder (.svg), and stop")
+      .output_folder()
+      .add_text(
+          "plates", [&](const std::string& text) { options.plates = numbers_of(text); },
+          "numbers of the plates to draw: 1-4,9")
+      .add_text(
+          "bars", [&](const std::string& text) { options.bars = bars_of(text); },
+          "scale bars to draw, with the distance of the centres [m]: 1,2,0.5;3,4,0.5")
+      .add_with_default("side", &options.side, "side of the plates to draw [m]")
+      .range(0.005, 10);
+}
+
 void declare(OptionList& list, Options& options) {
   options.families = targets::parse_families(kFamilies);
   list.add("input-file,i", &options.input,
@@ -71,21 +86,16 @@ void declare(OptionList& list, Options& options) {
           "families", kFamilies,
           [&](const std::string& text) { options.families = targets::parse_families(text); },
           "targets to find, at most one of each kind: circular12, circular14, circular16 or "
-          "circular20; a dictionary of OpenCV's markers (APRILTAG_36h11, 4X4_50, ...)")
+          "circular20; a dictionary of OpenCV's markers (APRILTAG_36h11, 4X4_50, ...); a ChArUco "
+          "board, charuco:COLUMNSxROWS:SQUARE:MARKER[:DICTIONARY]")
+      .add(
+          "target-table", &options.target_table,
+          "labels of the targets, for plates of other programs: lines CODE,LABEL; needs --families "
+          "with one family")
       .add("pictures", &options.pictures,
            "also write a picture of each target to this folder, a subfolder for each photograph")
-      .output_folder()
-      .add("print", &options.print,
-           "draw plates and bars to scale into this folder (.svg), and stop")
-      .output_folder()
-      .add_text(
-          "plates", [&](const std::string& text) { options.plates = numbers_of(text); },
-          "numbers of the plates to draw: 1-4,9")
-      .add_text(
-          "bars", [&](const std::string& text) { options.bars = bars_of(text); },
-          "scale bars to draw, with the distance of the centres [m]: 1,2,0.5;3,4,0.5")
-      .add_with_default("side", &options.side, "side of the plates to draw [m]")
-      .range(0.005, 10);
+      .output_folder();
+  declare_print(list, options);
   list.add_max_memory();
 }
 
@@ -118,12 +128,15 @@ void check_control(const Options& options) {
 void check(const Options& options) {
   if (!options.print.empty()) {
     if (!options.input.empty()) fail("--print: draws plates and reads no photographs");
-    for (const char* of_photographs : {"output-file", "pictures", "control", "epsg"})
+    for (const char* of_photographs :
+         {"output-file", "pictures", "control", "epsg", "target-table"})
       if (given(options.parsed, of_photographs))
         fail("--{}: is for photographs, but --print draws plates and stops", of_photographs);
     require_different_targets(options);
     if (options.plates.empty() && options.bars.empty())
       fail("--print: needs --plates or --bars, the targets to draw");
+    if (options.families.size() == 1 && options.families.front().kind == targets::Kind::board)
+      fail("--print: draws plates and bars, but --families is a board");
     if (options.families.size() != 1)
       fail("--print: needs --families with one family, that of the targets to draw");
     return;
@@ -134,6 +147,12 @@ void check(const Options& options) {
   if (options.output.empty()) fail("--output-file is required");
   require_not_an_input(options.output, options.input, "--output-file");
   check_control(options);
+}
+
+void read_table(Options& options) {
+  if (options.families.size() != 1 || options.families.front().kind == targets::Kind::board)
+    fail("--target-table: needs --families with one family, that of the codes");
+  targets::read_target_table(options.target_table, options.families.front());
 }
 
 }  // namespace
@@ -153,6 +172,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   declare(program.visible, options);
   options.parsed = parse_options(argc, argv, program);
   if (options.parsed.run) check(options);
+  if (options.parsed.run && !options.target_table.empty()) read_table(options);
   return options;
 }
 

@@ -19,7 +19,7 @@ struct Bar {
 struct Options {
   ParsedOptions parsed;
   std::vector<std::filesystem::path> input;
-  std::filesystem::path output, pictures;
+  std::filesystem::path output, pictures, target_table;
   std::vector<targets::Family> families;
   std::vector<std::filesystem::path> control;  // files of known points and bars
   int epsg = 0;                                // of their coordinates; 0: not given

@@ -5,9 +5,9 @@
 
 #include <utility>
 
-#include "calibrate/marker_board.h"
 #include "calibrate/piece.h"
 #include "calibrate/whole_board.h"
+#include "targets/marker_board.h"
 
 namespace axial::calibrate {
 namespace {
@@ -28,7 +28,7 @@ bool hidden_in_part(const Piece& piece, const Board& board) {
 }
 
 View see_markers(const std::string& name, const cv::Mat1b& photograph, const Board& board) {
-  View view{name, find_marker_corners(photograph, board)};
+  View view{name, targets::find_marker_corners(photograph, board)};
   if (view.corners.empty()) view.fault = "no marker of the board is found";
   return view;
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -15,106 +14,12 @@
 #include "io/cameras/table_text.h"
 #include "private/readers.h"
 #include "private/stated_points.h"
+#include "private/table_columns.h"
 
 namespace axial::control {
 namespace {
 
 using Fields = std::vector<std::string>;
-
-enum class Meaning {
-  other,
-  label,
-  x,
-  y,
-  z,
-  depth,
-  sigma,
-  sigma_xy,
-  sigma_x,
-  sigma_y,
-  sigma_z,
-  check,
-  enabled
-};
-
-// Names that positions of photographs do not have.
-constexpr std::array<std::pair<std::string_view, Meaning>, 22> kNames{{
-    {"marker", Meaning::label},       {"target", Meaning::label},
-    {"point", Meaning::label},        {"gcp", Meaning::label},
-    {"id", Meaning::label},           {"acc", Meaning::sigma},
-    {"xyacc", Meaning::sigma_xy},     {"xy acc", Meaning::sigma_xy},
-    {"xacc", Meaning::sigma_x},       {"accuracy x", Meaning::sigma_x},
-    {"sigma x", Meaning::sigma_x},    {"yacc", Meaning::sigma_y},
-    {"accuracy y", Meaning::sigma_y}, {"sigma y", Meaning::sigma_y},
-    {"zacc", Meaning::sigma_z},       {"z acc", Meaning::sigma_z},
-    {"check", Meaning::check},        {"check point", Meaning::check},
-    {"checkpoint", Meaning::check},   {"enabled", Meaning::enabled},
-    {"enable", Meaning::enabled},     {"enabled flag", Meaning::enabled},
-}};
-
-Meaning meaning_of_position(const std::string& words) {
-  switch (io::column_of(words)) {
-    case io::Column::label:
-      return Meaning::label;
-    case io::Column::x:
-      return Meaning::x;
-    case io::Column::y:
-      return Meaning::y;
-    case io::Column::z:
-      return Meaning::z;
-    case io::Column::depth:
-      return Meaning::depth;
-    case io::Column::sigma:
-      return Meaning::sigma;
-    case io::Column::sigma_across:
-      return Meaning::sigma_xy;
-    case io::Column::sigma_up:
-      return Meaning::sigma_z;
-    case io::Column::other:
-      break;
-  }
-  return Meaning::other;
-}
-
-// "label" for "gis label".
-std::string without_prefix(std::string words) {
-  for (const std::string_view of_plate : {"gis ", "marker ", "target ", "gcp "})
-    if (words.starts_with(of_plate)) words.erase(0, of_plate.size());
-  return words;
-}
-
-Meaning meaning_of(const std::string& words) {
-  const auto* const found =
-      std::ranges::find(kNames, words, &std::pair<std::string_view, Meaning>::first);
-  return found != kNames.end() ? found->second : meaning_of_position(words);
-}
-
-struct Header {
-  char delimiter = 0;
-  std::vector<Meaning> columns;
-  bool degrees = false;
-
-  bool has(Meaning meaning) const { return std::ranges::find(columns, meaning) != columns.end(); }
-};
-
-Header header_of(const Fields& fields, char delimiter, const std::string& where) {
-  Header header{delimiter, {}, false};
-  for (const std::string& field : fields) {
-    io::ColumnName name = io::column_name(field);
-    name.words = without_prefix(std::move(name.words));
-    Meaning meaning = meaning_of(name.words);
-    if (meaning != Meaning::check && meaning != Meaning::enabled && header.has(meaning))
-      meaning = Meaning::other;
-    const bool is_place = meaning == Meaning::x || meaning == Meaning::y || meaning == Meaning::z ||
-                          meaning == Meaning::depth;
-    if (is_place && !io::is_known_unit(name.unit))
-      fail("{}: column '{}' is in '{}', but must be in metres or degrees", where, name.words,
-           name.unit);
-    header.degrees |= is_place && (io::means_degrees(name) || io::names_degrees(name.words));
-    header.columns.push_back(meaning);
-  }
-  return header;
-}
 
 // The delimiter that gives most fields.
 char delimiter_of(std::string_view line) {
@@ -269,7 +174,7 @@ StatedPoint point_in(const Line& line, const Header& header) {
 Control read_points(const Table& table, const Header& header, const std::filesystem::path& file,
                     const ControlReading& options) {
   StatedPoints stated;
-  stated.degrees = header.degrees;
+  stated.degrees = header.degrees || (header.may_be_degrees && !table.crs);
   if (table.crs) {
     stated.crs = table.crs->text;
     stated.crs_where = table.crs->where;

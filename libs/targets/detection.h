@@ -30,16 +30,17 @@ inline ImagePoint image_point(const Eigen::Vector2d& pixel_with_integer_centres,
 struct Detection {
   std::string label;       // label_of() (family.h)
   std::size_t number = 0;  // numbers_of() (family.h)
+  std::size_t code = 0;    // code_of() (family.h)
   // Ring: the centre of the dot's ellipse, which is not the image of the dot's centre. Square: the
-  // intersection of the diagonals.
+  // intersection of the diagonals. Board: the corner.
   ImagePoint centre;
   // Square: the corners of the black border: top left, top right, bottom right, bottom left of the
-  // marker that is not turned. Ring: nothing.
+  // marker that is not turned. Others: nothing.
   std::optional<std::array<ImagePoint, 4>> corners{};
-  // Ring: the symmetric matrix [1/px] that maps the ellipse of the dot to the unit circle. Square:
+  // Ring: the symmetric matrix [1/px] that maps the ellipse of the dot to the unit circle. Others:
   // zero.
   Eigen::Matrix2d dot = Eigen::Matrix2d::Zero();
-  // Square root of the area of the plate in the photograph [px].
+  // Square root of the area of the plate in the photograph [px]. Board: side of a square [px].
   double width = 0;
   // Correlation (at most 1) of the photograph with the pattern of the target.
   double agreement = 0;

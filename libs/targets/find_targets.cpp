@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "base/order_statistics.h"
+#include "targets/board_finder.h"
 #include "targets/ring_finder.h"
 #include "targets/square_finder.h"
 
@@ -47,6 +48,18 @@ std::vector<Detection> without_repetitions(std::vector<Detection> all) {
   return kept;
 }
 
+std::vector<Detection> find_family(const cv::Mat1f& grey, const Family& family) {
+  switch (family.kind) {
+    case Kind::ring:
+      return find_rings(grey, family);
+    case Kind::square:
+      return find_squares(grey, family);
+    case Kind::board:
+      break;
+  }
+  return find_board_corners(grey, family);
+}
+
 }  // namespace
 
 std::uint64_t bytes_of_search(cv::Size size) {
@@ -60,8 +73,7 @@ std::vector<Detection> find_targets(const cv::Mat& photograph, std::span<const F
   const cv::Mat1f grey = grey_of(photograph);
   std::vector<Detection> all;
   for (const Family& family : families) {
-    std::vector<Detection> found = without_repetitions(
-        family.kind == Kind::ring ? find_rings(grey, family) : find_squares(grey, family));
+    std::vector<Detection> found = without_repetitions(find_family(grey, family));
     std::ranges::move(found, std::back_inserter(all));
   }
   return all;

@@ -6,14 +6,9 @@
 
 #include "base/error.h"
 #include "targets/dictionary.h"
-#include "targets/ring_codes.h"
 
 namespace axial::targets {
 namespace {
-
-std::uint32_t code_of(const Family& family, std::size_t number) {
-  return family.kind == Kind::ring ? ring_codes(family.bits).at(number - 1) : 0;
-}
 
 void check_number(const Family& family, std::size_t number) {
   const Numbers numbers = numbers_of(family);
@@ -37,7 +32,7 @@ Pattern::Pattern(std::uint32_t code, int bits, const RingRadii& radii)
 Pattern::Pattern(const Family& family, std::size_t number, const RingRadii& radii)
     : bits_(family.bits), radii_(radii), half_plate_(radii.plate) {
   check_number(family, number);
-  code_ = code_of(family, number);
+  code_ = static_cast<std::uint32_t>(code_of(family, number));
   if (family.kind == Kind::ring) return;
   cells_ = cells_of(family, number);
   half_plate_ = half_marker() + 1;

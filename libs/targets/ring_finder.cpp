@@ -85,6 +85,7 @@ std::optional<Detection> read_target(const cv::Mat1f& grey, const Ellipse& dot,
   Detection found;
   found.label = label_of(family, *number);
   found.number = *number;
+  found.code = codes[*number - 1];
   found.centre = image_point(fit->dot.centre, fit->covariance);
   found.dot = fit->dot.to_circle;
   found.width = 2 * ring->radii.plate * std::sqrt(half_axes(fit->dot).prod());

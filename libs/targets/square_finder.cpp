@@ -227,6 +227,7 @@ std::optional<Detection> measure(const cv::Mat1f& grey, const Corners& outline,
   Detection found = detection_of(*refined, pattern, agrees);
   found.label = label_of(family, decoded->number);
   found.number = decoded->number;
+  found.code = decoded->number;
   return found;
 }
 

@@ -22,6 +22,7 @@ json corner_json(const ImagePoint& point) {
 
 json target_json(const std::string& image, const Detection& target) {
   json result = {{"label", target.label},
+                 {"code", target.code},
                  {"image", image},
                  {"x", rounded(target.centre.pixel.x())},
                  {"y", rounded(target.centre.pixel.y())},
@@ -31,7 +32,7 @@ json target_json(const std::string& image, const Detection& target) {
   if (target.corners)
     for (const ImagePoint& corner : *target.corners)
       result["corners"].push_back(corner_json(corner));
-  else
+  else if (!target.dot.isZero(0))
     result["dot"] = {target.dot(0, 0), target.dot(0, 1), target.dot(1, 1)};
   return result;
 }

@@ -179,6 +179,15 @@ TEST_F(ReadControl, ReferenceOfMetashape) {
   EXPECT_EQ(control.points[1].sigma, Eigen::Vector3d::Constant(0.01));
 }
 
+// Names of columns that hold either unit.
+TEST_F(ReadControl, ColumnsMayBeMetresOrDegrees) {
+  const std::string names = "Label,X/Longitude,Y/Latitude,Z/Altitude\n";
+  const std::string metres = "a,500000,2500000,-3\n", degrees = "a,-81,24.5,-3\n";
+  const std::string system = "# CoordinateSystem: EPSG:32617\n";
+  EXPECT_EQ(read("a.csv", system + names + metres).points[0].metres.x(), 500000);
+  EXPECT_EQ(read("a.csv", names + degrees).crs, "EPSG:32617");
+}
+
 TEST_F(ReadControl, AccuraciesOfSingleCoordinates) {
   const Control control = read("reference.csv",
                                "label;x (m);y (m);z (m);accuracy;Accuracy_X_(m);Accuracy_Z_(m);"

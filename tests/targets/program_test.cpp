@@ -11,6 +11,7 @@
 #include "io/images/image.h"
 #include "support/program_run.h"
 #include "targets/drawn_plate.h"
+#include "targets/ring_codes.h"
 
 namespace axial::targets {
 namespace {
@@ -111,6 +112,16 @@ TEST_F(FindTargets, WritesFilesOfOtherPrograms) {
   EXPECT_THAT(markers, HasSubstr("z=\"-3\""));
 }
 
+TEST_F(FindTargets, TakesLabelsFromATable) {
+  write("1.png", "circular12", 7, {101.25, 90.5});
+  const std::uint32_t code = ring_codes(12)[6];
+  write_atomically(folder_ / "table.csv", fmt::format("{},north\n", code));
+  succeed_in("FindTargets", "1.png -o out.json --families circular12 --target-table table.csv");
+  ASSERT_EQ(targets().size(), 1u);
+  EXPECT_EQ(targets()[0].at("label"), "north");
+  EXPECT_EQ(targets()[0].at("code"), code);
+}
+
 TEST_F(FindTargets, WrongInputIsRefusedInOneLine) {
   write("dive/1.png", "circular12", 7, {100, 100});
   write_atomically(folder_ / "dive/2.png", "no image");
@@ -129,6 +140,10 @@ TEST_F(FindTargets, WrongInputIsRefusedInOneLine) {
   refuses("more -o out.json --control absent", "--control: is for an output file .txt or .xml");
   refuses("more -o out.xml --control absent", "absent");
   refuses("more -o out.xml --epsg 32617", "--epsg: needs --control");
+  write_atomically(folder_ / "table.csv", "4,a\n");
+  refuses("more -o out.json --families circular12 --target-table table.csv", "table.csv:1: '4'");
+  refuses("more -o out.json --target-table table.csv", "--target-table: needs --families with one");
+  refuses("--print plates --plates 1 --families charuco:7x5:0.04:0.03", "--families is a board");
   refuses("more -o out.json --max-memory 20", "--max-memory");
   refuses("more -o out.json --families ''", "names no family");
   refuses("--print plates --plates 18446744073709551615 --families circular12", "is not a range");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calibrate/board.h"
+#include "targets/board.h"
 
 #include <algorithm>
 #include <array>
@@ -10,9 +10,9 @@
 
 #include "base/error.h"
 #include "base/parse_number.h"
-#include "calibrate/marker_board.h"
+#include "targets/marker_board.h"
 
-namespace axial::calibrate {
+namespace axial::targets {
 namespace {
 
 std::vector<std::string> split(const std::string& text, char at) {
@@ -117,4 +117,4 @@ std::vector<Eigen::Vector3d> corners_of(const Board& board) {
   return corners;
 }
 
-}  // namespace axial::calibrate
+}  // namespace axial::targets

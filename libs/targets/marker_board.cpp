@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calibrate/marker_board.h"
+#include "targets/marker_board.h"
 
 #include <algorithm>
 #include <array>
@@ -12,14 +12,13 @@
 #include "base/error.h"
 #include "targets/dictionary.h"
 
-namespace axial::calibrate {
+namespace axial::targets {
 namespace {
 
 using cv::aruco::CharucoBoard;
 
 cv::Ptr<cv::aruco::Dictionary> dictionary_of(const Board& board, const std::string& where) {
-  if (const auto number = targets::dictionary_number(board.dictionary))
-    return targets::dictionary(*number);
+  if (const auto number = dictionary_number(board.dictionary)) return dictionary(*number);
   fail("{}: '{}' is not a dictionary of markers of OpenCV (4X4_50, APRILTAG_36h11, ...)", where,
        board.dictionary);
 }
@@ -133,4 +132,4 @@ std::vector<Corner> find_marker_corners(const cv::Mat1b& photograph, const Board
                                           : find_tags(photograph, board);
 }
 
-}  // namespace axial::calibrate
+}  // namespace axial::targets
