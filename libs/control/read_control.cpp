@@ -25,6 +25,7 @@ Control read_any(const std::filesystem::path& file, const ControlReading& option
   return read_table(text, file, options);
 }
 
+// The end of the message about another part: ", but scale bars".
 std::string contents_of(const Control& control) {
   std::string words;
   const auto add = [&](bool there, const char* what) {
@@ -33,12 +34,12 @@ std::string contents_of(const Control& control) {
   add(!control.images.empty(), "targets in photographs");
   add(!control.points.empty(), "control points");
   add(!control.bars.empty(), "scale bars");
-  return words.empty() ? "nothing" : words;
+  return words.empty() ? words : ", but " + words;
 }
 
 void require_role(const Control& control, Role role, const std::filesystem::path& file) {
   const auto require = [&](bool there, const char* what) {
-    if (!there) fail("{}: has no {}, but {}", file.string(), what, contents_of(control));
+    if (!there) fail("{}: has no {}{}", file.string(), what, contents_of(control));
   };
   if (role == Role::images) require(!control.images.empty(), "targets in photographs");
   if (role == Role::points) require(!control.points.empty(), "control points");

@@ -47,6 +47,7 @@ const std::vector<Wrong> kWrong{
      "",
      "has no targets in photographs, but scale bars",
      {.role = Role::images}},
+    {"a.json", R"({"targets": []})", "", "has no targets in photographs", {.role = Role::images}},
     {"a.csv", "1,2,0.5\n", ":1", "a header that names", {.role = Role::points}},
     {"a.csv", "label,x,y,z\n1,2,3,4\n", "", "no scale bars, but control", {.role = Role::bars}},
     {"a.txt", "EPSG:32617\n1 2 3 4 5\n", ":2", "IMAGE"},
