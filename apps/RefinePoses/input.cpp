@@ -35,7 +35,8 @@ io::Housing carried_housing(const io::ColmapModel& model, const LensesInAir& len
 
 // The input files: an output must not replace one.
 std::vector<fs::path> inputs_of(const Options& options, const fs::path& model) {
-  std::vector<fs::path> inputs{options.housing, options.database};
+  std::vector<fs::path> inputs{options.housing, options.database, options.control.targets,
+                               options.control.bars, options.control.control};
   constexpr std::string_view kPositions = "positions:";
   if (options.scale_from.starts_with(kPositions))
     inputs.push_back(options.parsed.common.working_folder /
@@ -46,7 +47,8 @@ std::vector<fs::path> inputs_of(const Options& options, const fs::path& model) {
 }
 
 std::vector<fs::path> outputs_of(const Options& options) {
-  std::vector<fs::path> outputs{options.output / "housing.json", options.output / "report.json"};
+  std::vector<fs::path> outputs{options.output / "housing.json", options.output / "report.json",
+                                options.output / kTargetPlaces};
   for (const char* name : {"cameras", "images", "points3D"}) {
     const fs::path sparse = options.output / "sparse", other = options.output / "colmap-underwater";
     outputs.push_back(sparse / name += ".txt");
@@ -119,6 +121,7 @@ Input read_input(const Options& options) {
   else if (!options.database.empty())
     input.left_out = add_left_out(options.database, input.lenses, input.model);
   input.housing = load_housing(options, input.model, input.lenses);
+  if (options.control.any()) input.control = read_control(options.control);
   return input;
 }
 

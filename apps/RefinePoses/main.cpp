@@ -19,7 +19,10 @@ void finish(const Options& options, const Input& input, const Refined& refined,
                   refined.after.ports,
                   options.refine.adjust,
                   unused.lines(),
-                  scale_lost};
+                  scale_lost,
+                  false,
+                  nullptr,
+                  {}};
   for (const std::string& line : error_lines(results)) log_info("{}", line);
   for (const std::string& line : position_lines(refined.report)) log_info("{}", line);
   for (const std::string& line : options.dropped_positions)
@@ -31,6 +34,10 @@ void finish(const Options& options, const Input& input, const Refined& refined,
   if (!results.options.poses_known) {
     log_info("{}", shape_line(known));
     log_info("{}", depth_line(known));
+  }
+  if (results.control) {
+    for (const std::string& line : control_lines(*results.control)) log_info("{}", line);
+    for (const std::string& line : control_warnings(*results.control)) log_warning("{}", line);
   }
   judge_numbers(options, known, results);
 }

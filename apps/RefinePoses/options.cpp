@@ -10,7 +10,8 @@ namespace axial::apps {
 namespace {
 
 void check_effective_lens(const Options& options) {
-  for (const char* other : {"input-file", "output-folder", "scale-from", "refine", "database"})
+  for (const char* other :
+       {"input-file", "output-folder", "scale-from", "refine", "database", "targets"})
     if (given(options.parsed, other))
       fail("--effective-lens {}: contradicts --{}", options.effective_lens.string(), other);
   if (options.lens.empty()) fail("--lens is missing: the lens calibrated in air");
@@ -28,6 +29,7 @@ void check(const Options& options) {
   if (options.scale_from.empty() && options.scale_sigma.given)
     fail("--scale-sigma {}: is the standard deviation of --scale-from, which is missing",
          options.scale_sigma.metres);
+  check(options.control);
   if (options.output.empty()) fail("--output-folder is missing");
 }
 
@@ -92,6 +94,23 @@ void declare_estimate(OptionList& visible, Options& options) {
                         "without this option, that of positions is estimated from their distances "
                         "to the cameras, unless their file states it")
       .positive()
+      .add("targets", &options.control.targets,
+           "targets in the photographs: a file of FindTargets, gcp_list.txt of OpenDroneMap, or "
+           "markers of Metashape (XML)")
+      .add("bars", &options.control.bars,
+           "known distances between targets: lines TARGET,TARGET,METRES,SIGMA, or JSON")
+      .add("control", &options.control.control,
+           "known coordinates of targets, or of cameras by the names of photographs: a table of "
+           "ReefShape or Metashape, gcp_list.txt, or JSON; coordinates may be missing, for example "
+           "all but depths")
+      .add("checks", &options.control.checks,
+           "labels of targets and bars (TARGET-TARGET), separated by commas, that do not enter the "
+           "adjustment: their errors are reported")
+      .add(
+          "epsg", &options.control.epsg,
+          "code of the system to which longitudes and latitudes of --control are transformed, with "
+          "metres as unit; default: the UTM zone of their mean")
+      .at_least(1)
       .add_with_default("max-error", &options.refine.tracks.max_error,
                         "observations with larger errors are dropped [px]")
       .positive()

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/program.h"
+#include "control.h"
 #include "pose/free_numbers.h"
 #include "pose/refine.h"
 #include "scale_from.h"
@@ -27,6 +28,7 @@ struct Options {
   bool allow_missing = false;            // no error if the known scale cannot be used
   std::string scale_from;  // see scale_from.h; empty: refraction alone determines the scale
   ScaleSigma scale_sigma;
+  ControlOptions control;
   std::vector<std::string> dropped_positions;  // lines of add_known() (scale_from.h)
   std::string refine_list = "auto";            // `refine` of pose::set_estimated_numbers()
   pose::Sigmas sigmas;

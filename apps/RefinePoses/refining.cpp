@@ -14,14 +14,19 @@
 namespace axial::apps {
 namespace {
 
-// Known positions place the model, so its local frame must be near them.
-LocalFrame enter_local_frame(std::vector<pose::KnownPosition>& positions) {
-  std::vector<Eigen::Vector3d> centres;
-  centres.reserve(positions.size());
-  for (const pose::KnownPosition& known : positions) centres.push_back(known.metres);
-  const LocalFrame frame = frame_of(centres, {});
+// Known positions and places place the model, so its local frame must be near them. Without both,
+// the frame is that of the model.
+LocalFrame enter_local_frame(const LocalFrame& of_model, pose::AdjustOptions& adjust,
+                             std::vector<pose::KnownPlace>& checks) {
+  if (adjust.positions.empty() && adjust.places.empty()) return of_model;
+  std::vector<Eigen::Vector3d> known = places_in_plan(adjust.places);
+  for (const pose::KnownPosition& position : adjust.positions) known.push_back(position.metres);
+  const LocalFrame frame = frame_of(known, {});
   if (frame.is_world()) return frame;
-  for (pose::KnownPosition& known : positions) known.metres = frame.to_local(known.metres);
+  for (pose::KnownPosition& position : adjust.positions)
+    position.metres = frame.to_local(position.metres);
+  enter(frame, adjust.places);
+  enter(frame, checks);
   return frame;
 }
 
@@ -90,11 +95,15 @@ void Refining::set_known() {
   options_.dropped_positions =
       add_known(options_.scale_from, options_.scale_sigma, options_.parsed.common.working_folder,
                 bundle(), adjust, unused_);
+  options_.refine.targets.clear();
+  refined_.control = {};
+  if (options_.control.any())
+    refined_.control = add_control(input_.control, refined_.after.bundle, options_.refine);
   adjust.poses_known = options_.poses == "known";
   pose::set_estimated_numbers(options_.refine_list, options_.sigmas, bundle(), adjust,
                               options_.parsed.option_of);
   options_.refine.keep_stated = options_.refine_list == "auto";
-  refined_.frame = adjust.positions.empty() ? input_.frame : enter_local_frame(adjust.positions);
+  refined_.frame = enter_local_frame(input_.frame, adjust, refined_.control.checks.places);
 }
 
 void Refining::find_unknown_kind() {
@@ -148,9 +157,11 @@ void Refining::try_another_kind() {
   refine_with_or_without_scale();
 }
 
-// The result. uncertainty() needs the positions that the last adjustment used.
+// The result. uncertainty() needs the known values that the last adjustment used.
 Refined Refining::take() {
   options_.refine.adjust.positions = refined_.report.positions;
+  options_.refine.adjust.distances = refined_.report.distances;
+  options_.refine.adjust.places = refined_.report.places;
   return std::move(refined_);
 }
 

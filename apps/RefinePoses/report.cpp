@@ -193,8 +193,8 @@ std::vector<std::string> uncertainty_lines(const Results& results, const pose::U
 std::optional<std::string> scale_warning(const Results& results, const pose::Uncertainty& known) {
   constexpr double kLargest = 0.02;
   const pose::AdjustOptions& options = results.options;
-  if (options.poses_known || results.scale_lost || !options.distances.empty() ||
-      !options.positions.empty() || known.scale_sigma <= kLargest)
+  if (options.poses_known || results.scale_lost || options.know_lengths() ||
+      known.scale_sigma <= kLargest)
     return {};
   const std::string known_to =
       std::isfinite(known.scale_sigma)
@@ -258,6 +258,7 @@ std::string report_json(const Results& results, const pose::Uncertainty* known) 
   if (Json positions = positions_json(report); !positions.is_null())
     json["positions"] = std::move(positions);
   if (!results.unused.empty()) json["unused"] = results.unused;
+  if (results.control) json["control"] = control_json(*results.control);
   if (results.registered) json["registered"] = json_of(*results.registered);
   for (const ImageErrors& image : results.images)
     json["images"].push_back({{"name", image.name},

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "control_report.h"
 #include "left_out.h"
 #include "pose/refine.h"
 
@@ -33,6 +34,7 @@ struct Results {
   bool scale_lost = false;
   bool is_other_kind = false;              // the photographs fit another kind of port better
   const Registered* registered = nullptr;  // with --database
+  std::optional<ControlResults> control;   // with --targets, once standard deviations are known
 };
 
 // Returns the table of errors as lines for the log.

@@ -35,6 +35,18 @@ void write_sigmas(const Options& options, const Input& input, const pose::Colmap
                            refined_cameras(refined, sigmas));
 }
 
+// Sets Results::control and writes the places of the targets.
+void write_control(const Options& options, const Refined& refined, Results& results) {
+  const pose::Bundle& bundle = refined.after.bundle;
+  std::vector<std::string> left_out = refined.control.unused;
+  left_out.insert(left_out.end(), refined.report.wrong_control.begin(),
+                  refined.report.wrong_control.end());
+  results.control =
+      control_results(bundle, results.options, refined.control.checks, std::move(left_out));
+  write_target_places(options.output / kTargetPlaces, bundle, results.options,
+                      options.refine.targets, refined.frame);
+}
+
 }  // namespace
 
 pose::Uncertainty write_results(const fs::path& folder,
@@ -57,12 +69,14 @@ pose::Uncertainty write_results(const fs::path& folder,
 }
 
 pose::Uncertainty write(const Options& options, const Input& input, const Refined& refined,
-                        const Results& results, const Context& context) {
+                        Results& results, const Context& context) {
   const pose::ColmapBundle& after = refined.after;
   const auto sigmas = pose::present_sigmas(after.bundle, results.options, nullptr);
   const io::Housing housing = to_housing(after, input.housing, sigmas);
   for (const auto& [name, port] : housing.ports) io::check_port(port, "The refined port " + name);
-  io::ColmapModel model = to_model(after, input.model, sigmas);
+  pose::ColmapBundle without_targets = after;
+  drop_targets(without_targets.bundle);
+  io::ColmapModel model = to_model(without_targets, input.model, sigmas);
   io::leave(refined.frame, model);
   return write_results(
       options.output, [&](const fs::path& folder) { write_model(options, folder, model, housing); },
@@ -74,6 +88,7 @@ pose::Uncertainty write(const Options& options, const Input& input, const Refine
         write_sigmas(options, input, after, known);
         if (!results.options.poses_known)
           known.depth_sigma = pose::depth_sigma(after.bundle, results.options, context);
+        if (options.control.any()) write_control(options, refined, results);
         return known;
       });
 }

@@ -12,6 +12,7 @@
 #include "base/parse_number.h"
 #include "io/cameras/image_positions.h"
 #include "io/cameras/position_file.h"
+#include "pose/known.h"
 #include "scene/robust_similarity.h"
 
 namespace axial::apps {
@@ -87,12 +88,6 @@ std::size_t point_named(const pose::Bundle& bundle, const std::string& word,
   return id;
 }
 
-Eigen::Vector3d place_of(const pose::Bundle& bundle, KnownDistance::Between between,
-                         std::size_t end) {
-  if (between == KnownDistance::Between::images) return bundle.images[end].pose.centre;
-  return bundle.points[point_of(bundle, end)].position;
-}
-
 KnownDistance known_distance(KnownDistance::Between between, const std::string& list, double sigma,
                              const pose::Bundle& bundle, const std::string& where) {
   std::vector<std::string> words = io::split_list(list, where);
@@ -112,7 +107,7 @@ KnownDistance known_distance(KnownDistance::Between between, const std::string& 
   known.sigma = sigma;
   if (!(known.metres > 0)) fail("{}: {} m is not a distance", where, words[2]);
   if (known.first == known.second) fail("{}: both ends are the same", where);
-  if (place_of(bundle, between, known.first) == place_of(bundle, between, known.second))
+  if (place_in(bundle, between, known.first) == place_in(bundle, between, known.second))
     no_use("{}: both ends have the same position in the model", where);
   return known;
 }

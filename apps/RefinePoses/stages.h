@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/unused_input.h"
+#include "control.h"
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
 #include "left_out.h"
@@ -26,6 +27,7 @@ struct Input {
   LocalFrame frame;  // of the model
   std::vector<io::ColmapCamera> lenses;
   io::Housing housing;
+  control::Control control;                    // with --targets
   std::optional<LeftOutPhotographs> left_out;  // with --database: photographs without a pose
 };
 
@@ -62,8 +64,12 @@ struct Refined {
   pose::Bundle before;
   pose::ColmapBundle after;
   pose::RefineReport report;
-  LocalFrame frame;  // of both bundles
+  LocalFrame frame;      // of both bundles
+  AddedControl control;  // with --targets
 };
+
+// The file of the places of targets in the output folder.
+inline constexpr const char* kTargetPlaces = "target_places.json";
 
 // Refines the bundle of `input`. The housing of `input` becomes a usual housing if --housing
 // unknown is given and the photographs fit a dome, or if the stated kind of port ends in an
@@ -91,9 +97,9 @@ void judge(const Options& options, const Refined& refined, Results& results);
 void judge_numbers(const Options& options, const pose::Uncertainty& known, const Results& results);
 
 // Writes all files of the output folder by write_results(); then the lens and the housing again,
-// with their standard deviations. Returns the standard deviations. Error if a refined port is
-// impossible.
+// with their standard deviations. Sets Results::control. Returns the standard deviations. Error if
+// a refined port is impossible.
 pose::Uncertainty write(const Options& options, const Input& input, const Refined& refined,
-                        const Results& results, const Context& context);
+                        Results& results, const Context& context);
 
 }  // namespace axial::apps

@@ -56,8 +56,7 @@ KindTrial first_fit(pose::PortKind kind, const pose::Bundle& part, bool is_state
     for (pose::BundleCamera& camera : trial.bundle.cameras) camera.measured.port = usual_port(kind);
   triangulate(trial.bundle);
   static_cast<pose::Unknowns&>(trial.options) = pose::unknowns_with(kind, sigmas);
-  if (!options.distances.empty() || !options.positions.empty())
-    trial.options.distances = held_length(part);
+  if (options.know_lengths()) trial.options.distances = held_length(part);
   trial.options.max_iterations = 40;
   fit(trial);
   return trial;

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +24,22 @@ struct KnownDistance {
   std::size_t first = 0, second = 0;
   double metres = 0;  // the length [m], above 0
   double sigma = 0;   // standard deviation [m], above 0
+  // The name of a bar between two targets, for messages. A bar has a Huber loss: deviations of more
+  // than three standard deviations count linearly. Empty: any other length.
+  std::string name = {};
+};
+
+// A point or a camera centre of which some or all coordinates are known.
+struct KnownPlace {
+  KnownDistance::Between of = KnownDistance::Between::points;
+  std::size_t index = 0;                             // as KnownDistance::first
+  Eigen::Vector3d metres = Eigen::Vector3d::Zero();  // the place [m], world frame, z upwards
+  // Standard deviations of the coordinates [m], above 0. Infinite: the coordinate is not known.
+  Eigen::Vector3d sigma = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  std::string name = {};  // for messages
+
+  bool knows(int coordinate) const { return std::isfinite(sigma(coordinate)); }
+  bool knows_all() const { return sigma.allFinite(); }
 };
 
 // A known camera centre.
@@ -70,11 +89,21 @@ struct AdjustOptions : Unknowns {
   // Known lengths and positions enter the cost. adjust() says which poses stay constant.
   std::vector<KnownDistance> distances;
   std::vector<KnownPosition> positions;
+  std::vector<KnownPlace> places;
+  // True if a length or a place is known.
+  bool know_lengths() const {
+    return !distances.empty() || !positions.empty() || !places.empty();
+  }
   bool points_known = false;  // true: all points stay constant
   bool poses_known = false;   // true: all poses stay constant
 
   // The standard deviation of the x and of the y of an observation with Observation::sigma 1 [px].
   double pixel_sigma = 1;
+  // The standard deviation of the x and of the y of `observation` [px].
+  double sigma_of(const Observation& observation) const {
+    return observation.target_sigma > 0 ? observation.target_sigma
+                                        : observation.sigma * pixel_sigma;
+  }
   double loss_sigmas = 2;  // Huber loss: errors above this many standard deviations count linearly
   int max_iterations = 100;  // of the solver
 
@@ -108,16 +137,17 @@ struct AdjustReport {
 // (BundleCamera::change) to minimize the cost, from their present values. The cost is the sum of
 // the squared reprojection errors of the exact projection (with Huber loss, in units of
 // `pixel_sigma` times Observation::sigma) and of the squared deviations from known distances,
-// positions and measured numbers (in their standard deviations). Positions have a Huber loss, too:
-// deviations of more than three standard deviations count linearly.
+// positions, places and measured numbers (in their standard deviations). Positions and places have
+// a Huber loss, too: deviations of more than three standard deviations count linearly.
 //
-// Without knowledge of positions, points or poses, the cost does not depend on where the model is
-// in the world. The pose of one image therefore stays constant: of the first image with an
+// Without knowledge of positions, places, points or poses, the cost does not depend on where the
+// model is in the world. The pose of one image therefore stays constant: of the first image with an
 // observation or with a known distance or position. Exceptions: with three or more known positions
 // or with known points, this pose is adjusted like all others, and with known poses, all poses stay
-// constant. Poses of images and positions of points that do not enter the cost stay unchanged. The
-// solver runs in one thread, because sums over several threads would depend on the order of the
-// threads.
+// constant. With known places, no pose stays constant, but motions of the whole model that change
+// no known coordinate (free_motions.h) are excluded: the pose of this image does not follow them.
+// Poses of images and positions of points that do not enter the cost stay unchanged. The solver
+// runs in one thread, because sums over several threads would depend on the order of the threads.
 //
 // The solver factorises the normal equations with the points eliminated. Its memory and the time of
 // an iteration depend on the pairs of images with common points. AdjustOptions::many_images says
@@ -133,12 +163,12 @@ struct AdjustReport {
 AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSink& sink = {},
                     const Context& context = {});
 
-// Estimates the standard deviation of the observations [px] from their reprojection errors. Let N
-// be the number of observations, S the sum of their squared errors, each divided by
-// Observation::sigma, and U the number of unknowns: 6
-// for each pose of an image with observations, except constant poses; 3 for each point, unless
-// points are known; and 1 for each free number of each camera. The result is sqrt(S / max(1, 2 N -
-// U)), and at least 1e-9 px. Infinite errors count with the mean square of the finite errors.
+// Estimates the standard deviation of the observations of features [px] from their reprojection
+// errors. Let N be the number of these observations, S the sum of their squared errors, each
+// divided by Observation::sigma, and U the number of unknowns: 6 for each pose of an image with
+// observations, except constant poses; 3 for each point, unless points are known; and 1 for each
+// free number of each camera. The result is sqrt(S / max(1, 2 N - U)), and at least 1e-9 px.
+// Infinite errors count with the mean square of the finite errors.
 double observed_pixel_sigma(const Bundle& bundle, const AdjustOptions& options);
 
 // Standard deviations of the results of bundle adjustment: the result of uncertainty().
@@ -173,6 +203,21 @@ struct Uncertainty {
 // of each part of the work.
 Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options,
                         const Context& context = {});
+
+// A point or an image of a bundle: KnownPlace::of and KnownPlace::index.
+struct PlaceIndex {
+  KnownDistance::Between of = KnownDistance::Between::points;
+  std::size_t index = 0;
+
+  bool operator==(const PlaceIndex&) const = default;
+};
+
+// The covariance [m^2] of places, by the same equations as uncertainty(): three rows and columns
+// for each place. It includes the errors of measured numbers that are not free. The variance of a
+// coordinate that nothing determines is infinite. Precondition: each point is a target or has a
+// known distance to another point.
+Eigen::MatrixXd covariance_of_places(const Bundle& bundle, const AdjustOptions& options,
+                                     std::span<const PlaceIndex> places);
 
 // Free numbers of cameras, and their covariance in the units of housing_change.h.
 struct NumbersCovariance {

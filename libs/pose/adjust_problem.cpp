@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "pose/free_motions.h"
 
 namespace axial::pose {
 namespace {
@@ -37,6 +38,32 @@ struct PositionResidual {
   template <class T>
   bool operator()(const T* pose, T* residual) const {
     for (int k = 0; k < 3; ++k) residual[k] = (pose[3 + k] - metres(k)) / sigma(k);
+    return true;
+  }
+};
+
+// Coordinates that are not known have infinite standard deviations, and thus no residual.
+struct PlaceResidual {
+  int offset;  // of the place within its block
+  Eigen::Vector3d metres, sigma;
+
+  template <class T>
+  bool operator()(const T* block, T* residual) const {
+    for (int k = 0; k < 3; ++k) residual[k] = (block[offset + k] - metres(k)) / sigma(k);
+    return true;
+  }
+};
+
+// How far a pose follows a motion of the whole model.
+struct MotionResidual {
+  PoseNumbers start;
+  Eigen::Matrix<double, kPoseNumbers, 1> direction;
+
+  template <class T>
+  bool operator()(const T* pose, T* residual) const {
+    residual[0] = T(0);
+    for (int k = 0; k < kPoseNumbers; ++k)
+      residual[0] += direction(k) * (pose[k] - start[static_cast<std::size_t>(k)]);
     return true;
   }
 };
@@ -70,6 +97,9 @@ ceres::Problem::Options problem_options(CurrentCameras* cameras) {
 // A position that is farther from the camera than this counts linearly [standard deviations]. Only
 // 3 % of correct positions are.
 constexpr double kPositionLoss = 3;
+// Of excluded motions [rad, m]. The cost does not depend on these motions, so that the residual is
+// 0 in the end, whatever its standard deviation.
+constexpr double kMotionSigma = 1e-4;
 
 void check(const Bundle& bundle, const AdjustOptions& options) {
   if (bundle.observations.empty()) fail("bundle adjustment: no observations");
@@ -83,6 +113,10 @@ void check(const Bundle& bundle, const AdjustOptions& options) {
       fail(
           "bundle adjustment: the standard deviation of a known position is {} m: must be positive",
           known.sigma.minCoeff());
+  for (const KnownPlace& known : options.places)
+    if (!(known.sigma.array() > 0).all())
+      fail("bundle adjustment: the standard deviation of {} is {} m: must be positive", known.name,
+           known.sigma.minCoeff());
   for (const BundleCamera& camera : bundle.cameras) {
     const auto& free = options.unknowns(camera).free;
     const auto end = free.begin() + kFocalNumber;
@@ -97,7 +131,7 @@ AdjustProblem::AdjustProblem(const Bundle& bundle, const AdjustOptions& options)
     : bundle_(bundle), options_(options) {
   check(bundle, options);
   fill_numbers();
-  tied_.resize(bundle.points.size());
+  for (const BundlePoint& point : bundle.points) tied_.push_back(point.is_target);
   cameras_ = std::make_unique<CurrentCameras>(bundle.cameras, change_block(0));
   problem_ = std::make_unique<ceres::Problem>(problem_options(cameras_.get()));
   add_observations();
@@ -117,10 +151,9 @@ void AdjustProblem::fill_numbers() {
 }
 
 void AdjustProblem::add_observations() {
-  std::map<double, ceres::LossFunction*> losses;  // few: observations are weighed in classes
-  const auto loss_of = [&](double relative) {
-    ceres::LossFunction*& loss = losses[relative];
-    const double sigma = relative * options_.pixel_sigma;
+  std::map<double, ceres::LossFunction*> losses;  // few: features are weighed in classes
+  const auto loss_of = [&](double sigma) {
+    ceres::LossFunction*& loss = losses[sigma];
     if (!loss)
       loss = new ceres::ScaledLoss(new ceres::HuberLoss(options_.loss_sigmas * sigma),
                                    1 / (sigma * sigma), ceres::TAKE_OWNERSHIP);
@@ -131,14 +164,18 @@ void AdjustProblem::add_observations() {
     problem_->AddResidualBlock(
         new ObservationCost(observation, image.pose, bundle_.cameras[image.camera],
                             (*cameras_)[image.camera]),
-        loss_of(observation.sigma), image_block(observation.image), point_block(observation.point),
-        change_block(image.camera));
+        loss_of(options_.sigma_of(observation)), image_block(observation.image),
+        point_block(observation.point), change_block(image.camera));
   }
 }
 
 void AdjustProblem::add_known() {
   for (const KnownDistance& known : options_.distances) add_known_distance(known);
   add_known_positions();
+  if (!options_.places.empty()) {
+    auto* const loss = new ceres::HuberLoss(kPositionLoss);
+    for (const KnownPlace& known : options_.places) add_known_place(known, loss);
+  }
   for (std::size_t camera = 0; camera < bundle_.cameras.size(); ++camera) {
     if (!owns_change(camera)) continue;
     const Unknowns& unknowns = options_.unknowns(bundle_.cameras[camera]);
@@ -168,12 +205,40 @@ void AdjustProblem::add_known_positions() {
                                loss, image_block(known.image));
 }
 
+void AdjustProblem::add_known_place(const KnownPlace& known, ceres::LossFunction* loss) {
+  if (known.of == KnownDistance::Between::images) {
+    problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<PlaceResidual, 3, kPoseNumbers>(
+                                   new PlaceResidual{3, known.metres, known.sigma}),
+                               loss, image_block(known.index));
+    return;
+  }
+  const std::size_t point = point_of(bundle_, known.index);
+  problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<PlaceResidual, 3, 3>(
+                                 new PlaceResidual{0, known.metres, known.sigma}),
+                             loss, point_block(point));
+}
+
+void AdjustProblem::exclude_free_motions() {
+  const std::size_t image = anchor();
+  const Pose& pose = bundle_.images[image].pose;
+  for (const Motion& motion : free_motions(bundle_, options_)) {
+    MotionResidual residual{numbers_of(pose), {}};
+    residual.direction << -(pose.rotation * motion.rotation), motion.shift_of(pose.centre);
+    residual.direction /= kMotionSigma * residual.direction.norm();
+    problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<MotionResidual, 1, kPoseNumbers>(
+                                   new MotionResidual(residual)),
+                               nullptr, image_block(image));
+  }
+}
+
 void AdjustProblem::add_known_distance(const KnownDistance& known) {
+  ceres::LossFunction* const loss =
+      known.name.empty() ? nullptr : new ceres::HuberLoss(kPositionLoss);
   if (known.between == KnownDistance::Between::images) {
     problem_->AddResidualBlock(
         new ceres::AutoDiffCostFunction<LengthResidual, 1, kPoseNumbers, kPoseNumbers>(
             new LengthResidual{3, known.metres, known.sigma}),
-        nullptr, image_block(known.first), image_block(known.second));
+        loss, image_block(known.first), image_block(known.second));
     return;
   }
   const std::size_t first = point_of(bundle_, known.first);
@@ -181,7 +246,7 @@ void AdjustProblem::add_known_distance(const KnownDistance& known) {
   tied_[first] = tied_[second] = true;
   problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<LengthResidual, 1, 3, 3>(
                                  new LengthResidual{0, known.metres, known.sigma}),
-                             nullptr, point_block(first), point_block(second));
+                             loss, point_block(first), point_block(second));
 }
 
 std::size_t AdjustProblem::anchor() const {
@@ -204,7 +269,10 @@ void AdjustProblem::fix_poses() {
 void AdjustProblem::fix_what_stays() {
   if (options_.points_known) fix_points();
   if (options_.poses_known) fix_poses();
-  if (!options_.points_known && !options_.poses_known && options_.positions.size() < 3)
+  if (!options_.points_known && !options_.poses_known && !options_.places.empty())
+    exclude_free_motions();
+  const bool held = options_.points_known || options_.poses_known || !options_.places.empty();
+  if (!held && options_.positions.size() < 3)
     problem_->SetParameterBlockConstant(image_block(anchor()));
   for (std::size_t camera = 0; camera < bundle_.cameras.size(); ++camera) {
     if (!owns_change(camera)) continue;

@@ -13,8 +13,8 @@
 namespace axial::pose {
 
 // The Ceres problem of a bundle. Its first residual blocks belong to the observations, in the order
-// of the bundle. The blocks of the known distances, of the known positions and of the measured
-// numbers of cameras follow, in this order.
+// of the bundle. The blocks of the known distances, positions and places, of the measured numbers
+// of cameras and of the excluded motions follow, in this order.
 class AdjustProblem {
  public:
   // Both arguments must outlive this object. The constructor does not change the bundle. Throws
@@ -28,8 +28,8 @@ class AdjustProblem {
   // has the numbers of PoseNumbers (observation_cost.h), a block of changes those of HousingChange,
   // and a block of a point the 3 coordinates of its position. The solver eliminates the blocks of
   // point_blocks(), so no residual may depend on two blocks of point_blocks(). Points with a known
-  // distance to another point are therefore among camera_blocks().
-  std::vector<double*> camera_blocks();  // poses, changes of cameras, points with a known distance
+  // distance to another point are therefore among camera_blocks(), and so are targets.
+  std::vector<double*> camera_blocks();  // poses, changes of cameras, these points
   std::vector<double*> point_blocks();   // all other points
 
   // The number of poses that the solver changes.
@@ -38,7 +38,7 @@ class AdjustProblem {
   // The index of the first image for which is_observed() is true; 0 if there is none. adjust() says
   // when its pose is constant.
   std::size_t anchor() const;
-  // True if the image has an observation or a known distance or position.
+  // True if the image has an observation or a known distance, position or place.
   bool is_observed(std::size_t image) const {
     return problem_->HasParameterBlock(numbers_.data() + kPoseNumbers * image);
   }
@@ -56,18 +56,21 @@ class AdjustProblem {
   // which is the bundle of the constructor or a copy of it.
   void write_back(Bundle& bundle);
 
- private:
   // The block of the position of a point.
   double* point_block(std::size_t point) {
     return image_block(bundle_.images.size()) + kHousingNumbers * bundle_.cameras.size() +
            3 * point;
   }
+
+ private:
   // False if the camera shares the change of another camera.
   bool owns_change(std::size_t camera) const { return !bundle_.cameras[camera].same_as; }
   void fill_numbers();
   void add_observations();
   void add_known();
   void add_known_positions();
+  void add_known_place(const KnownPlace& known, ceres::LossFunction* loss);
+  void exclude_free_motions();
   void add_known_distance(const KnownDistance& known);
   void add_measured(std::size_t camera, int number);
   void fix_points();
@@ -79,7 +82,7 @@ class AdjustProblem {
   // All parameter blocks: of the poses, of the changes and of the points. The solver orders blocks
   // by their addresses: in one array, the order is the same in every run.
   std::vector<double> numbers_;
-  std::vector<bool> tied_;  // points with a known distance to another point
+  std::vector<bool> tied_;  // points with a known distance to another point, and targets
   std::unique_ptr<CurrentCameras> cameras_;
   std::unique_ptr<ceres::Problem> problem_;
 };

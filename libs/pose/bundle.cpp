@@ -31,6 +31,10 @@ std::vector<std::size_t> observations_by_image(const Bundle& bundle) {
   return counts;
 }
 
+bool has_targets(const Bundle& bundle) {
+  return std::ranges::any_of(bundle.points, &BundlePoint::is_target);
+}
+
 std::vector<std::vector<std::size_t>> observations_of_each(
     std::span<const Observation> observations, std::size_t Observation::*of, std::size_t count) {
   std::vector<std::vector<std::size_t>> lists(count);
@@ -44,7 +48,7 @@ Bundle most_observed(const Bundle& bundle, std::size_t most, std::size_t least,
   for (const Observation& observation : bundle.observations)
     if (takes(observation.image)) ++seen[observation.point];
   for (std::size_t i = 0; i < seen.size(); ++i)
-    if (seen[i] >= least) order.push_back(i);
+    if (seen[i] >= least && !bundle.points[i].is_target) order.push_back(i);
   std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return seen[i]; });
   order.resize(std::min(order.size(), most));
   constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();

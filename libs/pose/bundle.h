@@ -44,6 +44,9 @@ struct BundleImage {
 struct BundlePoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   std::size_t source = 0;  // the point's id in the COLMAP model
+  // True: the centre of a coded target (target_points.h). `source` is then larger than all ids of
+  // the model.
+  bool is_target = false;
 };
 
 // A measured image of a point.
@@ -55,6 +58,9 @@ struct Observation {
   float size = 0;          // scale of the feature [px]; 0: not known
   // The standard deviation of the pixel as a multiple of AdjustOptions::pixel_sigma, above 0.
   double sigma = 1;
+  // The standard deviation of each coordinate of the centre of a target [px], which applies instead
+  // of `sigma`. 0: the observation of a feature.
+  double target_sigma = 0;
 };
 
 // The input and the result of adjust() (adjust.h).
@@ -75,6 +81,9 @@ std::size_t point_of(const Bundle& bundle, std::size_t source);
 // The number of observations in each image, in the order of Bundle::images.
 std::vector<std::size_t> observations_by_image(const Bundle& bundle);
 
+// True if the bundle has points that are targets.
+bool has_targets(const Bundle& bundle);
+
 // The indices of the observations of each of `count` images or points, in ascending order. `of`:
 // &Observation::image or &Observation::point.
 std::vector<std::vector<std::size_t>> observations_of_each(
@@ -82,7 +91,7 @@ std::vector<std::vector<std::size_t>> observations_of_each(
 
 // The part of the bundle that has the points with the most observations in the images for which
 // `takes` is true: at most `most` points, those with the most observations first, and only points
-// with `least` observations or more. All cameras and images stay.
+// with `least` observations or more that are no targets. All cameras and images stay.
 Bundle most_observed(const Bundle& bundle, std::size_t most, std::size_t least,
                      const std::function<bool(std::size_t image)>& takes);
 

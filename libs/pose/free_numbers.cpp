@@ -60,8 +60,7 @@ const NumberGroup& group_named(std::string_view word) {
 
 void check_known(const std::string& asked, const Words& words, const Sigmas& sigmas,
                  const Bundle& bundle, const AdjustOptions& adjust, SettingNames name_of) {
-  const bool metric = adjust.points_known || adjust.poses_known || !adjust.distances.empty() ||
-                      !adjust.positions.empty();
+  const bool metric = adjust.points_known || adjust.poses_known || adjust.know_lengths();
   if (words.contains("distance") && !is_measured(group_named("distance"), sigmas, bundle) &&
       !metric)
     fail(

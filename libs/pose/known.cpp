@@ -57,6 +57,11 @@ std::optional<std::string> why_lost_positions(const Bundle& bundle, const Adjust
 
 }  // namespace
 
+Eigen::Vector3d place_in(const Bundle& bundle, KnownDistance::Between of, std::size_t index) {
+  if (of == KnownDistance::Between::images) return bundle.images[index].pose.centre;
+  return bundle.points[point_of(bundle, index)].position;
+}
+
 std::vector<std::size_t> lost_positions(const Bundle& bundle, const AdjustOptions& options) {
   const std::vector<std::size_t> counts = observations_by_image(bundle);
   std::vector<std::size_t> lost;
@@ -68,7 +73,8 @@ std::vector<std::size_t> lost_positions(const Bundle& bundle, const AdjustOption
 std::vector<std::string> lost_knowledge(const Bundle& bundle, const AdjustOptions& options) {
   std::vector<std::string> reasons;
   for (const KnownDistance& known : options.distances)
-    if (auto why = why_lost(bundle, known)) reasons.push_back(*std::move(why));
+    if (auto why = known.name.empty() ? why_lost(bundle, known) : std::nullopt)
+      reasons.push_back(*std::move(why));
   if (auto why = why_lost_positions(bundle, options)) reasons.push_back(*std::move(why));
   return reasons;
 }

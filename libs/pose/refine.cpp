@@ -10,6 +10,8 @@
 
 #include "base/error.h"
 #include "base/order_statistics.h"
+#include "pose/control_fit.h"
+#include "pose/control_start.h"
 #include "pose/kept_numbers.h"
 #include "pose/known.h"
 #include "pose/observation_weights.h"
@@ -23,24 +25,22 @@ constexpr double kGainOfRounds = 0.1;
 // In the rounds, positions of unknown accuracy count with their estimated standard deviation times
 // this.
 constexpr double kLooseness = 3;
+constexpr double kUsualDistance = 2;        // of a scene [m], until a scale is known
 constexpr std::size_t kTrialPoints = 1500;  // enough to distinguish scales
 // Median distances of the scene [m] that are tried: from close-ups to wide surveys.
 constexpr std::array<double, 7> kTrialDistances{0.25, 0.5, 1, 2, 4, 8, 16};
 
-const Eigen::Vector3d& place_of(const Bundle& bundle, const KnownDistance& known, std::size_t end) {
-  if (known.between == KnownDistance::Between::images) return bundle.images[end].pose.centre;
-  return bundle.points[point_of(bundle, end)].position;
-}
-
-// The factor that scales the first known length to metres; 0 if no length is known.
+// The factor that scales the known lengths to metres, the median of all; 0 if no length is known.
 double known_scale(const Bundle& bundle, const AdjustOptions& options) {
+  std::vector<double> scales;
   for (const KnownDistance& known : options.distances) {
-    const double length =
-        (place_of(bundle, known, known.first) - place_of(bundle, known, known.second)).norm();
+    const double length = (place_in(bundle, known.between, known.first) -
+                           place_in(bundle, known.between, known.second))
+                              .norm();
     if (!(length > 0)) fail("a known length of {} m is zero in the model", known.metres);
-    return known.metres / length;
+    scales.push_back(known.metres / length);
   }
-  return 0;
+  return scales.empty() ? 0 : upper_median(std::move(scales));
 }
 
 // Moves the bundle to its known positions by a similarity; false if fewer than three are known.
@@ -126,6 +126,31 @@ void judge(const Bundle& bundle, double factor, AdjustOptions& options, RefineRe
   report.positions = options.positions;
 }
 
+// Removes the observations of targets that stand at two places.
+void drop_double_targets(Bundle& bundle, std::span<const Target> targets, RefineReport& report) {
+  constexpr double kLeastError = 8, kMedians = 4;  // [px]; poses are those of a pinhole engine
+  const double max_error =
+      std::max(kLeastError, kMedians * upper_median(reprojection_errors(bundle)));
+  for (const DoubleTarget& found : double_targets(bundle, targets, max_error)) {
+    const Target& target = targets[found.target];
+    report.wrong_control.push_back(fmt::format(
+        "{} is left out: {} photographs show it at one place, {} at another, {:.3g} m apart; two "
+        "plates have this label, or the plate was moved",
+        target.label, found.first, found.second, found.distance));
+    std::erase_if(bundle.observations, [&](const Observation& one) {
+      return bundle.points[one.point].is_target && bundle.points[one.point].source == target.source;
+    });
+  }
+}
+
+// Leaves out bars and places that cannot be used or do not fit.
+void judge_control(const Bundle& bundle, AdjustOptions& options, RefineReport& report) {
+  for (std::string& line : leave_out_lost(bundle, options))
+    report.wrong_control.push_back(std::move(line));
+  for (std::string& line : leave_out_outliers(bundle, options))
+    report.wrong_control.push_back(std::move(line));
+}
+
 // Sets free numbers to their measured values and keeps them, if the observations do not contradict
 // these values. Returns whether there are such numbers.
 bool keep_stated_numbers(Bundle& bundle, AdjustOptions& options) {
@@ -147,10 +172,27 @@ void scale_places(Bundle& bundle, double scale) {
   for (BundlePoint& point : bundle.points) point.position *= scale;
 }
 
+// Targets, whose places depend on the scale, determine the scale: each step improves both.
+void scale_by_targets(Bundle& bundle, const AdjustOptions& options) {
+  constexpr int kSteps = 4;
+  for (int step = 0; step < kSteps; ++step) {
+    if (const double known = known_scale(bundle, options); known > 0) scale_places(bundle, known);
+    place_by_control(bundle, options);
+    triangulate(bundle);
+  }
+}
+
 void bring_to_metres(Bundle& bundle, const AdjustOptions& options) {
   if (!options.poses_known && !place_by_positions(bundle, options.positions)) {
-    const double known = known_scale(bundle, options);
-    scale_places(bundle, known > 0 ? known : best_scale(bundle));
+    if (has_targets(bundle)) {
+      scale_places(bundle, kUsualDistance / median_distance(bundle));
+      triangulate(bundle);
+    }
+    if (!determine_scale(options)) scale_places(bundle, best_scale(bundle));
+    if (has_targets(bundle))
+      scale_by_targets(bundle, options);
+    else if (const double known = known_scale(bundle, options); known > 0)
+      scale_places(bundle, known);
   }
   triangulate(bundle);
 }
@@ -170,8 +212,10 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context&
   adjusting.loss_sigmas *= 4;
   adjusting.least_gain = std::max(adjusting.least_gain, kGainOfRounds);
   Adjuster adjuster(context);
+  if (!options.targets.empty()) drop_double_targets(bundle, options.targets, report);
   for (int round = 0; round < options.rounds; ++round) {
     judge(bundle, kLooseness, adjusting, report);
+    judge_control(bundle, adjusting, report);
     report.last = adjuster.adjust(bundle, adjusting, fmt::format("round {}", round + 1));
     // The adjusted cameras predict which of several observations in one image is the right one.
     if (round == 0) report.repeated = drop_repeated(bundle);
@@ -185,16 +229,23 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context&
     limits = options.tracks;
     adjusting.loss_sigmas = options.adjust.loss_sigmas;
     weigh_by_size(bundle);
+    correct_targets(bundle, options.targets);
     adjusting.pixel_sigma = observed_pixel_sigma(bundle, adjusting);
   }
   adjusting.least_gain = options.adjust.least_gain;
   judge(bundle, 1, adjusting, report);
+  judge_control(bundle, adjusting, report);
   report.last = adjuster.adjust(bundle, adjusting, "last adjustment");
   if (options.keep_stated && keep_stated_numbers(bundle, adjusting))
     report.last = adjuster.adjust(bundle, adjusting, "adjustment with stated numbers");
+  while (leave_out_worst(bundle, adjusting, report.wrong_control))
+    report.last = adjuster.adjust(bundle, adjusting, "adjustment without a wrong bar or place");
   filter(bundle, limits, &report.dropped);
   if (bundle.observations.empty()) fail("no observation fits refractive cameras");
   report.lost = lost_knowledge(bundle, adjusting);
+  judge_control(bundle, adjusting, report);
+  report.distances = adjusting.distances;
+  report.places = adjusting.places;
   report.position_distances = position_distances(bundle, report.positions);
   correct_contradicted(report.position_distances, report.positions);
   report.rms_after = root_mean_square(reprojection_errors(bundle));

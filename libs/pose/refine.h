@@ -7,6 +7,7 @@
 
 #include "pose/adjust.h"
 #include "pose/position_sigma.h"
+#include "pose/target_points.h"
 #include "pose/tracks.h"
 
 namespace axial::pose {
@@ -15,6 +16,10 @@ struct RefineOptions {
   AdjustOptions adjust;
   TrackLimits tracks;
   int rounds = 3;  // a round adjusts, then drops observations that do not fit (filter())
+  // Targets whose points are in the bundle (add_targets()). Their observations are corrected after
+  // each round (correct_targets()). Known lengths and places that do not fit are left out
+  // (control_fit.h) if they have names.
+  std::vector<Target> targets;
   // True: free numbers whose measured values the observations do not contradict keep these values
   // (numbers_to_keep() in kept_numbers.h). The other numbers are adjusted once more.
   bool keep_stated = false;
@@ -40,6 +45,12 @@ struct RefineReport {
   // position_sigma.h). uncertainty() needs these positions in place of `options.adjust.positions`.
   std::vector<KnownPosition> positions;
   PositionDistances position_distances;  // of these positions, before the correction
+  // The known lengths and places that the last adjustment used. uncertainty() needs them in place
+  // of those of `options.adjust`.
+  std::vector<KnownDistance> distances;
+  std::vector<KnownPlace> places;
+  // A line for each bar, place or target that was left out, or that is doubtful.
+  std::vector<std::string> wrong_control;
   // A line for each known position that was left out, because it does not fit the others
   // (judge_positions() in position_sigma.h).
   std::vector<std::string> wrong_positions;
@@ -49,14 +60,16 @@ struct RefineReport {
 // pinhole engine's model has no scale. The first rule that applies is used:
 // - If `options.poses_known` is true, the poses are in metres and stay as they are.
 // - Three or more `options.positions` place the bundle by a similarity.
-// - The first of `options.distances` scales the bundle.
+// - `options.places` place the bundle (place_by_control() in control_start.h), and, if they do not
+//   determine it, leave the scale to the next rules.
+// - `options.distances` scale the bundle, by the median of their scales.
 // - Otherwise a short adjustment is tried for a series of median scene distances from 0.25 to 16
 //   m, and the scale with the smallest error is taken. The errors differ because refraction depends
 //   on the distance in metres.
 //
-// Throws an Error if the third rule applies and the first known distance is zero in the model or
-// names a point that the bundle does not have. Throws an Error if the last rule applies and the
-// bundle has no observations.
+// Throws an Error if the rule of distances applies and a known distance is zero in the
+// model or names a point that the bundle does not have. Throws an Error if the last rule applies
+// and the bundle has no observations.
 void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 
 // Adjusts (adjust()) and filters (filter()) a bundle in metres for `options.rounds` rounds, then

@@ -22,7 +22,10 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 
 std::size_t unknowns_of(const Bundle& bundle, const AdjustOptions& options) {
-  const std::size_t points = options.points_known ? 0 : bundle.points.size();
+  const std::size_t points = options.points_known
+                                 ? 0
+                                 : static_cast<std::size_t>(std::ranges::count(
+                                       bundle.points, false, &BundlePoint::is_target));
   std::size_t free = 0;
   for (const BundleCamera& camera : bundle.cameras)
     if (!camera.same_as)
@@ -31,7 +34,8 @@ std::size_t unknowns_of(const Bundle& bundle, const AdjustOptions& options) {
   const std::vector<std::size_t> counts = observations_by_image(bundle);
   auto images = counts.size() -
                 static_cast<std::size_t>(std::count(counts.begin(), counts.end(), std::size_t{0}));
-  const bool held = options.points_known || options.positions.size() >= 3;
+  const bool held =
+      options.points_known || options.positions.size() >= 3 || !options.places.empty();
   if (!held) --images;
   if (options.poses_known) images = 0;
   return kPoseNumbers * images + free + 3 * points;
@@ -229,6 +233,27 @@ class Normal {
     return std::sqrt(variance) / baseline.norm();
   }
 
+  Eigen::MatrixXd covariance_of_places(std::span<const PlaceIndex> places) {
+    const auto count = 3 * static_cast<Eigen::Index>(places.size());
+    Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(unknowns_, count), moved = directions;
+    Eigen::VectorXd undetermined = Eigen::VectorXd::Zero(count);
+    for (Eigen::Index row = 0; row < count; ++row) {
+      add_coordinate(places[static_cast<std::size_t>(row / 3)], row % 3, directions.col(row));
+      if (directions.col(row).isZero(0)) continue;  // a constant pose
+      if (std::isfinite(covariance_->variance(directions.col(row))))
+        moved.col(row) = covariance_->times(directions.col(row));
+      else
+        undetermined(row) = kInfinite;
+    }
+    Eigen::MatrixXd covariance = directions.transpose() * moved;
+    if (!fixed_.empty()) {
+      const Eigen::MatrixXd by_fixed = by_fixed_.transpose() * moved;
+      covariance += by_fixed.transpose() * by_fixed;
+    }
+    covariance.diagonal() += undetermined;
+    return covariance;
+  }
+
   // Uncertainty::shape_sigma and Uncertainty::least_linked.
   void find_shape(Uncertainty& result) {
     const std::vector<std::size_t> images = sample_of_images();
@@ -283,6 +308,17 @@ class Normal {
     if (found == columns_.end()) return;
     for (int k = 0; k < 3; ++k)
       direction(unknown_of_column_[static_cast<std::size_t>(found->second + 3 + k)]) += along(k);
+  }
+
+  void add_coordinate(const PlaceIndex& place, Eigen::Index axis,
+                      Eigen::Ref<Eigen::VectorXd> direction) {
+    const bool is_image = place.of == KnownDistance::Between::images;
+    const double* const block = is_image ? problem_.image_block(place.index)
+                                         : problem_.point_block(point_of(bundle_, place.index));
+    const auto found = columns_.find(block);
+    if (found == columns_.end()) return;
+    const Eigen::Index column = found->second + (is_image ? 3 : 0) + axis;
+    direction(unknown_of_column_[static_cast<std::size_t>(column)]) = 1;
   }
 
   // The column of a number of a camera; nothing if it has none.
@@ -359,8 +395,11 @@ AdjustOptions weighed_by_residuals(const Bundle& bundle, const AdjustOptions& op
 }  // namespace
 
 double observed_pixel_sigma(const Bundle& bundle, const AdjustOptions& options) {
-  std::vector<double> errors = reprojection_errors(bundle);
-  for (std::size_t i = 0; i < errors.size(); ++i) errors[i] /= bundle.observations[i].sigma;
+  const std::vector<double> all = reprojection_errors(bundle);
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (const Observation& one = bundle.observations[i]; !(one.target_sigma > 0))
+      errors.push_back(all[i] / one.sigma);
   const double residuals = 2.0 * static_cast<double>(errors.size());
   const double free = std::max(1.0, residuals - static_cast<double>(unknowns_of(bundle, options)));
   constexpr double kLeast = 1e-9;  // [px], size of rounding errors
@@ -369,6 +408,11 @@ double observed_pixel_sigma(const Bundle& bundle, const AdjustOptions& options) 
 
 NumbersCovariance covariance_of_numbers(const Bundle& bundle, const AdjustOptions& options) {
   return Normal(bundle, weighed_by_residuals(bundle, options), {}).covariance_of_numbers();
+}
+
+Eigen::MatrixXd covariance_of_places(const Bundle& bundle, const AdjustOptions& options,
+                                     std::span<const PlaceIndex> places) {
+  return Normal(bundle, weighed_by_residuals(bundle, options), {}).covariance_of_places(places);
 }
 
 Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options,

@@ -77,6 +77,9 @@ class Programs:
         """The lens in air behind its port to one lens for COLMAP, `file`."""
         return [self.folder / "RefinePoses", "--effective-lens", file, "--lens", lens, "--housing", housing]
 
+    def find_targets(self, images, file, *options):
+        return [self.folder / "FindTargets", "-i", images, "-o", file, *options]
+
     def densify(self, scene, folder, *options):
         """`scene` to depth maps and a dense cloud in `folder`."""
         return [self.folder / "DensifyPointCloud", "-i", scene, "-w", folder, *options]

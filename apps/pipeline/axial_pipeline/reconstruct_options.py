@@ -7,7 +7,7 @@ import itertools
 import os
 import pathlib
 
-from . import (cameras, cluster, colmap, doubles, estimates, files, first_checks, first_look, lenses,
+from . import (cameras, cluster, colmap, control, doubles, estimates, files, first_checks, first_look, lenses,
                masks, matching, photographs, poses, positions, video)
 from .failure import Failure
 from .option_files import find_option, has_option
@@ -40,6 +40,7 @@ def options(script_folder, description, words=None):
     parser.add_argument("-o", "--output", required=True, help="folder for all output files")
     parser.add_argument("--scale-from", default="",
                         help="known lengths or positions [m], as for RefinePoses")
+    control.add_options(parser)
     masks.add_options(parser)
     parser.add_argument("--refine", default="",
                         help="values of lens and port to estimate, as for RefinePoses (default: auto)")
@@ -231,6 +232,7 @@ def check_paths(given):
         if path and not (name == "housing" and path in first_checks.KINDS):
             setattr(given, name, files.existing(f"--{name}", path))
     masks.check(given)
+    control.check(given)
     file = positions.file_of(given.scale_from)
     if file is not None:
         given.scale_from = positions.PREFIX + files.existing("--scale-from", given.scale_from, file, is_file=True)

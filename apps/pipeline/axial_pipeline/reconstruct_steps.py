@@ -3,8 +3,8 @@
 
 import pathlib
 
-from . import (cameras, colmap, database, features, left_out, lenses, masks, matching, poses, positions, start_lens,
-               still_features, turns, video)
+from . import (cameras, colmap, control, database, features, left_out, lenses, masks, matching, poses, positions,
+               start_lens, still_features, turns, video)
 from .option_files import find_option, has_option, read_by
 from .programs import Programs, words_of
 from .reconstruct_options import wanted_steps
@@ -131,15 +131,22 @@ def colmap_steps(given, out):
                after=lambda: poses.take_best(file, given, out, more))
 
 
+def targets_step(run):
+    file = run.out / control.FOUND
+    return run.step("targets", run.programs.find_targets(run.given.images, file, *run.own("targets")), file,
+                    reads=[run.given.images])
+
+
 def refine_step(run):
     given, out, known_positions = run.given, run.out, positions.file_of(run.given.scale_from)
     known = ["--scale-from", given.scale_from] if given.scale_from else []
     refine = ["--refine", given.refine] if given.refine else []
     refine_into = lambda folder: run.programs.refine_poses(
         out / "colmap" / "best", cameras.lens_file(given, out), cameras.housing_file(given, out), folder,
-        "--database", out / "database.db", *known, *refine, *run.own("refine"))
+        "--database", out / "database.db", *known, *control.words(given, out), *refine, *run.own("refine"))
     return run.step("refine", refine_into(run.refined), Report(run.refined / "report.json"),
-                    reads=[*run.lens_files, given.housing, *([known_positions] if known_positions else [])],
+                    reads=[*run.lens_files, given.housing, *([known_positions] if known_positions else []),
+                           *control.files_of(given, out)],
                     before=lambda: prepare_refining(given, out, refine_into), after=lambda: poses.print_changes(out))
 
 
@@ -243,6 +250,8 @@ def steps(given, out):
     if given.videos:
         yield video.step(given, out)
     yield from colmap_steps(given, out)
+    if control.finds(given):
+        yield targets_step(run)
     yield refine_step(run)
     if "densify" not in wanted:
         return

@@ -41,6 +41,7 @@ KINDS = {
                      "overview.db.tmp", "overview_pairs.txt", "overview_pairs.txt.tmp", "match_pairs.txt",
                      "match_pairs.txt.tmp"], (8000, 2, 60, 1), "COLMAP's matcher"),
     "poses": Kind(["colmap"], (4000, 4, 60, 1), "COLMAP's mapper"),
+    "targets": Kind(["targets.json"], (4000, 0, 30, 0.02), "FindTargets", option="find-targets", has_limits=True),
     "refine": Kind(["refined"], (2000, 4, 60, 0.2), "RefinePoses", option="refine-poses"),
     "import": Kind(["scene.mvs", "scene.housing.json", "scene.lenses.json", "scene.geo.json", "undistorted"],
                    (2000, 2, 30, 0.02)),

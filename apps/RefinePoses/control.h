@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Targets, bars and control points of --targets, --bars and --control.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "control/control.h"
+#include "pose/refine.h"
+#include "scene/local_frame.h"
+
+namespace axial::apps {
+
+struct ControlOptions {
+  std::filesystem::path targets, bars, control;  // files; empty: not given
+  std::string checks;  // labels and bars that are checks, separated by commas
+  int epsg = 0;       // of the coordinates; 0: not given
+
+  bool any() const { return !targets.empty(); }
+};
+
+// Throws an Error if options contradict each other.
+void check(const ControlOptions& options);
+
+// Reads the files. Errors name the file and the line. Notes about the files go to the log.
+control::Control read_control(const ControlOptions& options);
+
+// Known lengths and places that do not enter the adjustment. Their errors are reported.
+struct ControlChecks {
+  std::vector<pose::KnownDistance> distances;
+  std::vector<pose::KnownPlace> places;
+};
+
+struct AddedControl {
+  ControlChecks checks;
+  // A line for each bar, point or target that cannot be used.
+  std::vector<std::string> unused;
+};
+
+// Adds the targets to the bundle, and bars and control points to `refine`: to `refine.adjust` those
+// that are used. A control point whose label is no target, but the name of an image, is a camera
+// centre: so depths of a gauge enter. Targets in photographs that the bundle does not have are not
+// used.
+AddedControl add_control(const control::Control& control, pose::Bundle& bundle,
+                         pose::RefineOptions& refine);
+
+// The places [world] from which the local frame is chosen: those with x and y.
+std::vector<Eigen::Vector3d> places_in_plan(const std::vector<pose::KnownPlace>& places);
+
+// Moves places from the world to `frame`.
+void enter(const LocalFrame& frame, std::vector<pose::KnownPlace>& places);
+
+}  // namespace axial::apps

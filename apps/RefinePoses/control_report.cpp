@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "control_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "io/bytes/json.h"
+
+namespace axial::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Between = pose::KnownDistance::Between;
+
+constexpr double kDoubtful = 3;  // standard deviations of a check
+
+// The photographs that observe a point.
+std::set<std::size_t> photographs_of(const pose::Bundle& bundle, std::size_t source) {
+  std::set<std::size_t> images;
+  for (const pose::Observation& one : bundle.observations)
+    if (bundle.points[one.point].source == source) images.insert(one.image);
+  return images;
+}
+
+std::size_t photographs_of(const pose::Bundle& bundle, const pose::KnownPlace& place) {
+  return place.of == Between::images ? 1 : photographs_of(bundle, place.index).size();
+}
+
+std::size_t photographs_of_both(const pose::Bundle& bundle, const pose::KnownDistance& bar) {
+  const std::set<std::size_t> first = photographs_of(bundle, bar.first);
+  const std::set<std::size_t> second = photographs_of(bundle, bar.second);
+  return static_cast<std::size_t>(
+      std::ranges::count_if(first, [&](std::size_t image) { return second.contains(image); }));
+}
+
+void add(const pose::Bundle& bundle, const pose::AdjustOptions& options,
+         const std::vector<pose::KnownDistance>& distances,
+         const std::vector<pose::KnownPlace>& places, bool check, ControlResults& results) {
+  const pose::ControlFits fits = pose::control_fits(bundle, options, distances, places, !check);
+  for (std::size_t i = 0; i < distances.size(); ++i)
+    if (!distances[i].name.empty())
+      results.bars.push_back(
+          {distances[i].name, fits.distances[i], photographs_of_both(bundle, distances[i]), check});
+  for (std::size_t i = 0; i < places.size(); ++i)
+    results.points.push_back(
+        {places[i].name, fits.places[i], photographs_of(bundle, places[i]), check});
+}
+
+void count_targets(const pose::Bundle& bundle, ControlResults& results) {
+  const std::vector<double> errors = reprojection_errors(bundle);
+  std::vector<double> of_targets;
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    if (bundle.points[bundle.observations[i].point].is_target) of_targets.push_back(errors[i]);
+  results.observations = of_targets.size();
+  results.rms = pose::root_mean_square(of_targets);
+  results.targets = static_cast<std::size_t>(
+      std::ranges::count(bundle.points, true, &pose::BundlePoint::is_target));
+}
+
+const char* use_of(bool check) {
+  return check ? "check" : "used";
+}
+
+std::string off_in_words(const pose::KnownFit& fit) {
+  return fmt::format("{:+.2f} mm ({:.2f})", 1000 * fit.off(), 1000 * fit.expected);
+}
+
+Json json_of(const pose::KnownFit& fit) {
+  if (!std::isfinite(fit.known_sigma)) return nullptr;
+  Json json{{"stated", fit.known}, {"stated_sigma", fit.known_sigma}, {"found", fit.present}};
+  json["found_sigma"] = std::isfinite(fit.present_sigma) ? Json(fit.present_sigma) : Json(nullptr);
+  json["residual"] = fit.off();
+  json["expected_sigma"] = std::isfinite(fit.expected) ? Json(fit.expected) : Json(nullptr);
+  return json;
+}
+
+bool is_doubtful(const pose::KnownFit& fit) {
+  return std::isfinite(fit.known_sigma) && std::abs(fit.deviation()) > kDoubtful;
+}
+
+std::string doubt(const std::string& name, const pose::KnownFit& fit) {
+  return fmt::format("The check {} is off by {:.3g} mm, {:.2g} standard deviations", name,
+                     1000 * fit.off(), std::abs(fit.deviation()));
+}
+
+}  // namespace
+
+ControlResults control_results(const pose::Bundle& bundle, const pose::AdjustOptions& options,
+                               ControlChecks checks, std::vector<std::string> left_out) {
+  ControlResults results;
+  results.left_out = std::move(left_out);
+  count_targets(bundle, results);
+  add(bundle, options, options.distances, options.places, false, results);
+  pose::AdjustOptions of_checks;
+  of_checks.distances = std::move(checks.distances);
+  of_checks.places = std::move(checks.places);
+  for (std::string& line : pose::leave_out_lost(bundle, of_checks))
+    results.left_out.push_back(std::move(line));
+  add(bundle, options, of_checks.distances, of_checks.places, true, results);
+  return results;
+}
+
+std::vector<std::string> control_lines(const ControlResults& results) {
+  std::vector<std::string> lines{fmt::format("{} targets, {} observations, RMS {:.3f} px",
+                                             results.targets, results.observations, results.rms)};
+  if (!results.bars.empty())
+    lines.push_back("Bars: found minus stated (expected standard deviation), photographs:");
+  for (const BarResult& bar : results.bars)
+    lines.push_back(fmt::format("  {}: {}, {}, {}", bar.name, off_in_words(bar.fit),
+                                bar.photographs, use_of(bar.check)));
+  if (!results.points.empty())
+    lines.push_back(
+        "Control points: found minus stated in x, y, z (expected standard deviation), "
+        "photographs:");
+  for (const PointResult& point : results.points) {
+    std::vector<std::string> words;
+    for (const pose::KnownFit& fit : point.fit.coordinates)
+      words.push_back(std::isfinite(fit.known_sigma) ? off_in_words(fit) : "-");
+    lines.push_back(fmt::format("  {}: {}, {}, {}", point.name, fmt::join(words, ", "),
+                                point.photographs, use_of(point.check)));
+  }
+  return lines;
+}
+
+std::vector<std::string> control_warnings(const ControlResults& results) {
+  std::vector<std::string> lines = results.left_out;
+  for (const BarResult& bar : results.bars)
+    if (bar.check && is_doubtful(bar.fit)) lines.push_back(doubt(bar.name, bar.fit));
+  for (const PointResult& point : results.points)
+    for (std::size_t k = 0; point.check && k < 3; ++k)
+      if (is_doubtful(point.fit.coordinates[k]))
+        lines.push_back(
+            doubt(point.name + " in " + std::string("xyz")[k], point.fit.coordinates[k]));
+  return lines;
+}
+
+nlohmann::ordered_json control_json(const ControlResults& results) {
+  Json json{{"targets", results.targets}, {"observations", results.observations},
+            {"rms_px", results.rms},      {"bars", Json::array()},
+            {"points", Json::array()},    {"left_out", results.left_out}};
+  for (const BarResult& bar : results.bars)
+    json["bars"].push_back({{"name", bar.name},
+                            {"use", use_of(bar.check)},
+                            {"photographs", bar.photographs},
+                            {"length_m", json_of(bar.fit)}});
+  for (const PointResult& point : results.points)
+    json["points"].push_back({{"name", point.name},
+                              {"use", use_of(point.check)},
+                              {"photographs", point.photographs},
+                              {"x_m", json_of(point.fit.coordinates[0])},
+                              {"y_m", json_of(point.fit.coordinates[1])},
+                              {"z_m", json_of(point.fit.coordinates[2])}});
+  return json;
+}
+
+void write_target_places(const std::filesystem::path& file, const pose::Bundle& bundle,
+                         const pose::AdjustOptions& options,
+                         const std::vector<pose::Target>& targets, const LocalFrame& frame) {
+  std::vector<pose::PlaceIndex> places;
+  nlohmann::json list = nlohmann::json::array();
+  for (const pose::Target& target : targets) {
+    const auto point = std::ranges::find(bundle.points, target.source, &pose::BundlePoint::source);
+    if (target.source == 0 || point == bundle.points.end()) continue;
+    places.push_back({Between::points, target.source});
+    const Eigen::Vector3d world = frame.to_world(point->position);
+    list.push_back({{"label", target.label},
+                    {"x", world.x()},
+                    {"y", world.y()},
+                    {"z", world.z()},
+                    {"photographs", photographs_of(bundle, target.source).size()}});
+  }
+  nlohmann::json json{{"targets", std::move(list)}, {"covariance_m2", nlohmann::json::array()}};
+  if (!places.empty()) {
+    const Eigen::MatrixXd covariance = pose::covariance_of_places(bundle, options, places);
+    for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+      nlohmann::json row;
+      // io::write_json() writes numbers that are not finite as null.
+      for (Eigen::Index j = 0; j < covariance.cols(); ++j) row.push_back(covariance(i, j));
+      json["covariance_m2"].push_back(std::move(row));
+    }
+  }
+  io::write_json(file, json);
+}
+
+}  // namespace axial::apps

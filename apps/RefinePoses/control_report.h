@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What became of targets, bars and control points: lines for the log, the report, and the file of
+// places for later surveys.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "control.h"
+#include "pose/control_fit.h"
+#include "scene/local_frame.h"
+
+namespace axial::apps {
+
+// A bar or a control point beside the adjusted model.
+struct BarResult {
+  std::string name;
+  pose::KnownFit fit;
+  std::size_t photographs = 0;  // that show both ends
+  bool check = false;
+};
+struct PointResult {
+  std::string name;
+  pose::PlaceFit fit;
+  std::size_t photographs = 0;
+  bool check = false;
+};
+struct ControlResults {
+  std::size_t targets = 0, observations = 0;  // that the adjustment used
+  double rms = 0;                             // reprojection error of the targets [px]
+  std::vector<BarResult> bars;
+  std::vector<PointResult> points;
+  std::vector<std::string> left_out;  // lines about what was not used or is doubtful
+};
+
+// The results of an adjustment of `bundle` with `options`. Checks that have no place any more are
+// added to the lines that were left out.
+ControlResults control_results(const pose::Bundle& bundle, const pose::AdjustOptions& options,
+                               ControlChecks checks, std::vector<std::string> left_out);
+
+// The table for the log.
+std::vector<std::string> control_lines(const ControlResults& results);
+
+// Returns warnings: lines that were left out, and checks that are off by more than three standard
+// deviations.
+std::vector<std::string> control_warnings(const ControlResults& results);
+
+// The object "control" of the report.
+nlohmann::ordered_json control_json(const ControlResults& results);
+
+// Writes the places of all targets in the world and their covariances (docs/formats.md, "Places of
+// targets"). `targets`: whose points are in the bundle.
+void write_target_places(const std::filesystem::path& file, const pose::Bundle& bundle,
+                         const pose::AdjustOptions& options,
+                         const std::vector<pose::Target>& targets, const LocalFrame& frame);
+
+}  // namespace axial::apps

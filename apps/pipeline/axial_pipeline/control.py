@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Coded targets, bars and control points, which RefinePoses takes."""
+
+from . import files
+from .failure import Failure
+from .programs import require, words_of
+
+FIND = "find"            # the value of --targets for which FindTargets runs
+FOUND = "targets.json"   # its result
+FILES = ("targets", "bars", "control")
+
+
+def add_options(parser):
+    parser.add_argument("--targets", default="", help="coded targets in the photographs: find, or a file as for "
+                        "RefinePoses (docs/targets.md)")
+    parser.add_argument("--bars", default="", help="known distances between targets, as for RefinePoses")
+    parser.add_argument("--control", default="", help="known coordinates of targets, as for RefinePoses")
+    parser.add_argument("--checks", default="", help="targets and bars that do not enter the adjustment, as for "
+                        "RefinePoses")
+
+
+def finds(given):
+    """Whether the run looks for targets."""
+    return given.targets == FIND
+
+
+def check(given):
+    """Checks the options and makes the paths of the files absolute."""
+    for name in FILES:
+        value = getattr(given, name)
+        if value and not (name == "targets" and value == FIND):
+            setattr(given, name, files.existing(f"--{name}", value, value, is_file=True))
+    for name in ("bars", "control", "checks"):
+        value = getattr(given, name)
+        if value and not given.targets:
+            raise Failure(f"--{name} {value}: is for targets, and --targets is missing")
+    if words_of("find-targets", given) and not finds(given):
+        raise Failure(f"--find-targets {given.find_targets}: is for --targets {FIND}")
+    if finds(given):
+        require(given.programs, ["FindTargets"])
+
+
+def files_of(given, out):
+    """The files that RefinePoses reads."""
+    found = out / FOUND if finds(given) else given.targets
+    return [file for file in (found, given.bars, given.control) if file]
+
+
+def words(given, out):
+    """The options of RefinePoses."""
+    options = {"--targets": out / FOUND if finds(given) else given.targets, "--bars": given.bars,
+               "--control": given.control, "--checks": given.checks}
+    return [word for option, value in options.items() if value for word in (option, value)]
