@@ -15,7 +15,7 @@ namespace axial::apps {
 struct ControlOptions {
   std::filesystem::path targets, bars, control;  // files; empty: not given
   std::string checks;  // labels and bars that are checks, separated by commas
-  int epsg = 0;       // of the coordinates; 0: not given
+  int epsg = 0;        // of the coordinates; 0: not given
 
   bool any() const { return !targets.empty(); }
 };

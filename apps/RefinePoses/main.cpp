@@ -19,10 +19,7 @@ void finish(const Options& options, const Input& input, const Refined& refined,
                   refined.after.ports,
                   options.refine.adjust,
                   unused.lines(),
-                  scale_lost,
-                  false,
-                  nullptr,
-                  {}};
+                  scale_lost};
   for (const std::string& line : error_lines(results)) log_info("{}", line);
   for (const std::string& line : position_lines(refined.report)) log_info("{}", line);
   for (const std::string& line : options.dropped_positions)

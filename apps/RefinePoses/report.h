@@ -32,9 +32,9 @@ struct Results {
   // input. In this case the scale is reported as not known, even if refraction determines it.
   std::vector<std::string> unused;
   bool scale_lost = false;
-  bool is_other_kind = false;              // the photographs fit another kind of port better
-  const Registered* registered = nullptr;  // with --database
-  std::optional<ControlResults> control;   // with --targets, once standard deviations are known
+  bool is_other_kind = false;                  // the photographs fit another kind of port better
+  const Registered* registered = nullptr;      // with --database
+  std::optional<ControlResults> control = {};  // with --targets, once standard deviations are known
 };
 
 // Returns the table of errors as lines for the log.

@@ -46,6 +46,26 @@ def files_of(given, out):
     return [file for file in (found, given.bars, given.control) if file]
 
 
+def lines_of(found):
+    """The lines of the report about the object "control" of RefinePoses's report."""
+    yield f"- {found['targets']} targets at {found['observations']} places, {found['rms_px']:.3f} px"
+    yield from (f"- warning: {line}" for line in found["left_out"])
+    if found["bars"] or found["points"]:
+        yield from ("", "| bar or control point | use | photographs | found minus stated [mm] | expected sigma [mm] |",
+                    "|---|---|---|---|---|")
+    for bar in found["bars"]:
+        yield row_of(bar, [bar["length_m"]])
+    for point in found["points"]:
+        yield row_of(point, [point[axis] for axis in ("x_m", "y_m", "z_m")])
+
+
+def row_of(entry, numbers):
+    """A row of the table: an entry of the report, and its numbers, of which those that are not known are None."""
+    columns = [", ".join("-" if one is None or one[key] is None else f"{1e3 * one[key]:.2f}" for one in numbers)
+               for key in ("residual", "expected_sigma")]
+    return f"| {entry['name']} | {entry['use']} | {entry['photographs']} | {' | '.join(columns)} |"
+
+
 def words(given, out):
     """The options of RefinePoses."""
     options = {"--targets": out / FOUND if finds(given) else given.targets, "--bars": given.bars,

@@ -18,7 +18,7 @@ maps (docs/cluster.md).
 import fcntl
 import pathlib
 
-from . import cluster, files, ownership, poses, still_features, video
+from . import cluster, control, files, ownership, poses, still_features, video
 from .failure import Failure, run_main
 from .reconstruct_options import check_options, check_photographs, options, wanted_steps
 from .reconstruct_steps import best_mesh, steps
@@ -50,6 +50,8 @@ def lines_of_poses(refined):
     for camera in refined["cameras"]:
         for value in camera["free"]:
             yield f"- camera {camera['id']}, {value['name']}: {line_of_value(value)}"
+    if "control" in refined:
+        yield from control.lines_of(refined["control"])
 
 
 def line_of_value(value):
