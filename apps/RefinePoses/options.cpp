@@ -111,6 +111,10 @@ void declare_estimate(OptionList& visible, Options& options) {
           "code of the system to which longitudes and latitudes of --control are transformed, with "
           "metres as unit; default: the UTM zone of their mean")
       .at_least(1)
+      .add_with_default(
+          "weight-by-radius", &options.refine.weigh_by_radius,
+          "observations at the rim of photographs weigh less if their errors are larger, "
+          "as behind flat ports")
       .add_with_default("max-error", &options.refine.tracks.max_error,
                         "observations with larger errors are dropped [px]")
       .positive()

@@ -15,4 +15,10 @@ namespace axial::pose {
 // size it is 1.
 void weigh_by_size(Bundle& bundle);
 
+// Multiplies Observation::sigma of features by their relative standard deviation at their distance
+// from the principal point, in the same classes of equal numbers: a flat port blurs the rim of the
+// photograph. The errors count in units of the present Observation::sigma, so that only the part is
+// found that sizes of features do not explain.
+void weigh_by_radius(Bundle& bundle);
+
 }  // namespace axial::pose

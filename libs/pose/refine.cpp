@@ -229,6 +229,7 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context&
     limits = options.tracks;
     adjusting.loss_sigmas = options.adjust.loss_sigmas;
     weigh_by_size(bundle);
+    if (options.weigh_by_radius) weigh_by_radius(bundle);
     correct_targets(bundle, options.targets);
     adjusting.pixel_sigma = observed_pixel_sigma(bundle, adjusting);
   }

@@ -20,6 +20,9 @@ struct RefineOptions {
   // each round (correct_targets()). Known lengths and places that do not fit are left out
   // (control_fit.h) if they have names.
   std::vector<Target> targets;
+  // True: observations at the rim of photographs weigh less if their errors are larger
+  // (weigh_by_radius() in observation_weights.h).
+  bool weigh_by_radius = false;
   // True: free numbers whose measured values the observations do not contradict keep these values
   // (numbers_to_keep() in kept_numbers.h). The other numbers are adjusted once more.
   bool keep_stated = false;

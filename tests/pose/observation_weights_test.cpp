@@ -63,6 +63,38 @@ TEST(ObservationWeights, OfFewObservationsAreEqual) {
   for (const Observation& observation : bundle.observations) ASSERT_EQ(observation.sigma, 1);
 }
 
+// Errors that grow from 0.1 px at the centre of the photograph by 0.1 px for each 100 px.
+TEST(ObservationWeights, FollowTheErrorsAtTheRim) {
+  Bundle bundle = survey(camera_behind(flat_port(2)), {.points = 800});
+  const Eigen::Vector2d middle = cameras_now(bundle)[0].principal_point();
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal(0, 1);
+  std::vector<double> radii;
+  for (Observation& observation : bundle.observations) {
+    radii.push_back((observation.pixel - middle).norm());
+    const double spread = 0.1 + 0.001 * radii.back();
+    observation.pixel += spread * Eigen::Vector2d(normal(random), normal(random));
+  }
+  weigh_by_size(bundle);
+  weigh_by_radius(bundle);
+  double nearest = 1e9, farthest = 0, at_nearest = 0, at_farthest = 0;
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    if (radii[i] < nearest) nearest = radii[i], at_nearest = bundle.observations[i].sigma;
+    if (radii[i] > farthest) farthest = radii[i], at_farthest = bundle.observations[i].sigma;
+  }
+  // Classes of an eighth of the observations: their medians lie between those of centre and rim.
+  EXPECT_GT(at_farthest / at_nearest, 2.5);
+  EXPECT_LT(at_farthest / at_nearest, (0.1 + 0.001 * farthest) / (0.1 + 0.001 * nearest));
+}
+
+TEST(ObservationWeights, AreAlikeIfErrorsAtTheRimAreNotLarger) {
+  Bundle bundle = survey(camera_behind(flat_port(2)), {.points = 800, .noise = 0.2});
+  weigh_by_size(bundle);
+  weigh_by_radius(bundle);
+  // The median of 200 or more errors is known to 5 %.
+  for (const Observation& observation : bundle.observations) ASSERT_NEAR(observation.sigma, 1, 0.2);
+}
+
 // Over ten draws: the poses are better, and errors are as large as stated.
 TEST(ObservationWeights, MakePosesBetter) {
   double with = 0, without = 0, share = 0;

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// RefinePoses --targets, --bars, --control and --checks.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.h"
+#include "pose/refine_poses.h"
+
+namespace axial::pose {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+const Eigen::Vector3d kOrigin(500000, 2500000, -20);
+
+// Six plates on the ground at 0.8 m. Their places are those of points in the frame of the survey.
+class ControlProgram : public RefinePoses {
+ protected:
+  std::vector<Eigen::Vector3d> places_{{-0.3, -0.2, 0.8}, {0.3, -0.2, 0.85}, {-0.3, 0.2, 0.85},
+                                       {0.3, 0.2, 0.8},   {0, 0, 0.9},       {0.1, 0.15, 0.8}};
+
+  static std::string label(std::size_t plate) { return fmt::format("target {}", plate + 1); }
+
+  void SetUp() override {
+    RefinePoses::SetUp();
+    json targets = json::array();
+    const PhotographCamera camera(truth_.cameras[0].now());
+    for (const BundleImage& image : truth_.images)
+      for (std::size_t plate = 0; plate < places_.size(); ++plate) {
+        const PhotographImage seen = camera.image(image.pose.to_camera(places_[plate]));
+        const Eigen::Vector2d pixel =
+            testing::seen_by_lens((seen.pixel.x() - 511.5) / 610, (seen.pixel.y() - 383.5) / 615);
+        if (seen.visible && pixel.minCoeff() > 0 && pixel.x() < 1023 && pixel.y() < 767)
+          targets.push_back({{"label", label(plate)},
+                             {"image", image.name},
+                             {"x", pixel.x() + 0.5},
+                             {"y", pixel.y() + 0.5},
+                             {"sigma", 0.02}});
+      }
+    write_atomically(folder_ / "targets.json", json{{"targets", targets}}.dump());
+  }
+
+  double length(std::size_t a, std::size_t b) const { return (places_[a] - places_[b]).norm(); }
+
+  // Two bars between plates, each `factor` times as long as in truth.
+  void write_bars(double factor) const {
+    write_atomically(folder_ / "bars.csv",
+                     fmt::format("target 1,target 2,{},0.0001\ntarget 3,target 4,{},0.0001\n",
+                                 factor * length(0, 1), factor * length(2, 3)));
+  }
+
+  // All plates as control points of 2 mm; `moved` is 50 mm off.
+  void write_points(std::optional<std::size_t> moved = {}) const {
+    json points = json::array();
+    for (std::size_t plate = 0; plate < places_.size(); ++plate) {
+      Eigen::Vector3d place = places_[plate] + kOrigin;
+      if (plate == moved) place.x() += 0.05;
+      points.push_back({{"label", label(plate)},
+                        {"x", place.x()},
+                        {"y", place.y()},
+                        {"z", place.z()},
+                        {"sigma", 0.002}});
+    }
+    write_atomically(folder_ / "control.json", json{{"points", points}}.dump());
+  }
+
+  json refined(const std::string& options, const std::string& out = "out") {
+    said_ = succeed(kInput + "-o " + out + " --targets targets.json " + options);
+    return json::parse(read_file(folder_ / out / "report.json"));
+  }
+
+  std::string said_;
+};
+
+TEST_F(ControlProgram, ABarGivesTheScaleAndAnotherChecksIt) {
+  write_bars(1.01);
+  const json report = refined("--bars bars.csv --checks \"target 3-target 4\"");
+  ASSERT_THAT(report["control"]["bars"], SizeIs(2));
+  const json &used = report["control"]["bars"][0], &check = report["control"]["bars"][1];
+  EXPECT_EQ(used["use"], "used");
+  EXPECT_EQ(check["use"], "check");
+  // Both bars are 1 % too long, so that the model is larger and they agree.
+  EXPECT_NEAR(check["length_m"]["residual"].get<double>(), 0, 1e-3);
+  EXPECT_THAT(said_, HasSubstr("bar target 3-target 4: "));
+  const io::ColmapModel model = io::read_colmap_model(folder_ / "out" / "sparse");
+  EXPECT_NEAR(testing::pose_errors(found_poses(model), truth_).scale, 1 / 1.01, 1e-3);
+  EXPECT_LE(model.points.size(), truth_.points.size());  // targets are no points of COLMAP's
+}
+
+TEST_F(ControlProgram, ControlPointsPlaceTheModel) {
+  write_points();
+  const json report = refined("--control control.json");
+  EXPECT_THAT(report["control"]["left_out"], IsEmpty());
+  for (const json& point : report["control"]["points"])
+    for (const char* axis : {"x_m", "y_m", "z_m"})
+      EXPECT_NEAR(point[axis]["residual"].get<double>(), 0, 1e-3);
+  const Bundle found = found_poses(io::read_colmap_model(folder_ / "out" / "sparse"));
+  for (std::size_t i = 0; i < found.images.size(); ++i)
+    EXPECT_LT((found.images[i].pose.centre - truth_.images[i].pose.centre - kOrigin).norm(), 3e-3);
+  const json places = json::parse(read_file(folder_ / "out" / "target_places.json"));
+  ASSERT_THAT(places["targets"], SizeIs(places_.size()));
+  EXPECT_THAT(places["covariance_m2"], SizeIs(3 * places_.size()));
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const json& one = places["targets"][i];
+    EXPECT_EQ(one["label"], label(i));
+    EXPECT_NEAR(one["x"].get<double>(), (places_[i] + kOrigin).x(), 1e-3);
+  }
+}
+
+TEST_F(ControlProgram, APlateThatMovedIsNamed) {
+  write_points(1);
+  const json report = refined("--control control.json");
+  ASSERT_THAT(report["control"]["left_out"], SizeIs(1));
+  EXPECT_THAT(report["control"]["left_out"][0], HasSubstr("target 2 is"));
+  EXPECT_THAT(said_, HasSubstr(report["control"]["left_out"][0].get<std::string>()));
+}
+
+TEST_F(ControlProgram, TheSameBytesForAnyNumberOfThreads) {
+  write_bars(1);
+  write_points();
+  refined("--bars bars.csv --control control.json --max-threads 1", "one");
+  refined("--bars bars.csv --control control.json --max-threads 2", "two");
+  for (const char* file : {"report.json", "target_places.json", "sparse/images.txt"})
+    EXPECT_TRUE(read_file(folder_ / "one" / file) == read_file(folder_ / "two" / file)) << file;
+}
+
+TEST_F(ControlProgram, WhatCannotBeUsedIsAWarning) {
+  write_atomically(folder_ / "bars.csv", "target 1,target 99,0.2\n");
+  refined("--bars bars.csv");
+  EXPECT_THAT(said_, HasSubstr("bars.csv:1: bar target 1-target 99: no photograph with a pose"));
+}
+
+TEST_F(ControlProgram, RefusesWrongInput) {
+  write_bars(1);
+  const std::string command = kInput + "-o out -v 0 --targets targets.json ";
+  expect_refusal("RefinePoses", command + "--bars none.csv", "none.csv: cannot be opened");
+  expect_refusal("RefinePoses", command + "--bars bars.csv --checks 'target 77'",
+                 "check 'target 77': there is no control point and no bar");
+  expect_refusal("RefinePoses", kInput + "-o out -v 0 --bars bars.csv", "--targets is missing");
+  for (const char* text : {"target 1,target 2,zero\n", "target 1,target 2,-1\n"}) {
+    write_atomically(folder_ / "bars.csv", text);
+    expect_refusal("RefinePoses", command + "--bars bars.csv", "bars.csv:1");
+  }
+}
+
+}  // namespace
+}  // namespace axial::pose
