@@ -28,6 +28,7 @@ void check(const Options& options) {
   if (options.scale_from.empty() && options.scale_sigma.given)
     fail("--scale-sigma {}: is the standard deviation of --scale-from, which is missing",
          options.scale_sigma.metres);
+  check_rigs(options.rigs);
   if (options.output.empty()) fail("--output-folder is missing");
 }
 
@@ -118,6 +119,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   // In the order of --help.
   declare_files(program.visible, options, housing);
   declare_estimate(program.visible, options);
+  declare_rigs(program.visible, options.rigs);
   UnusedInput::declare(program.visible, options.allow_missing);
   options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;

@@ -148,11 +148,14 @@ void scale_places(Bundle& bundle, double scale) {
 }
 
 void bring_to_metres(Bundle& bundle, const AdjustOptions& options) {
+  leave_out_unobserved(bundle);
   if (!options.poses_known && !place_by_positions(bundle, options.positions)) {
-    const double known = known_scale(bundle, options);
+    double known = known_scale(bundle, options);
+    if (!(known > 0)) known = scale_by_rigs(bundle);
     scale_places(bundle, known > 0 ? known : best_scale(bundle));
   }
   triangulate(bundle);
+  start_rigs(bundle);
 }
 
 RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context& context) {
@@ -177,6 +180,8 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context&
     if (round == 0) report.repeated = drop_repeated(bundle);
     const std::size_t dropped = filter(bundle, limits, &report.dropped);
     if (bundle.observations.empty()) fail("no observation fits refractive cameras");
+    leave_out_unobserved(bundle);
+    if (round > 0) set_delays(bundle);
     report.lost = lost_knowledge(bundle, adjusting);
     if (!report.lost.empty()) return report;
     adjuster.say(fmt::format("round {}: {} iterations, RMS {:.3f} px, {} observations dropped",
@@ -193,6 +198,7 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context&
   if (options.keep_stated && keep_stated_numbers(bundle, adjusting))
     report.last = adjuster.adjust(bundle, adjusting, "adjustment with stated numbers");
   filter(bundle, limits, &report.dropped);
+  leave_out_unobserved(bundle);
   if (bundle.observations.empty()) fail("no observation fits refractive cameras");
   report.lost = lost_knowledge(bundle, adjusting);
   report.position_distances = position_distances(bundle, report.positions);
