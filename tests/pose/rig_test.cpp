@@ -94,24 +94,6 @@ TEST(Rig, LateCameraIsFoundAndKeepsTheScale) {
   }
 }
 
-// Along the track, a wrong base and a delay look the same.
-TEST(Rig, DelayAlongTheBaseIsNotKnown) {
-  const RigSurveyOptions options{.base = {0.2, 0, 0}, .delay = 0.04, .noise = 0.3};
-  const Bundle truth = rig_survey(options);
-  const Bundle found = refined(truth, true_rig(options, Known::stated));
-  EXPECT_GT(fit_of(found, found.rigs[0], 1).delay_sigma, 0.002);
-}
-
-// A photograph with a wrong pose, such as one of another frame, does not bend the model.
-TEST(Rig, WrongFrameDoesNotChangeTheScale) {
-  const RigSurveyOptions options{.noise = 0.3, .seed = 4};
-  const Bundle truth = rig_survey(options);
-  Rig rig = true_rig(options, Known::stated);
-  std::swap(rig.frames[4].images[1].image, rig.frames[5].images[1].image);
-  const Bundle found = refined(truth, rig);
-  EXPECT_NEAR(pose_errors(found, truth).scale, 1, 0.001);
-}
-
 // Errors of the stated base are errors of the scale, and the standard deviation of the scale says
 // so: its mean square over 30 draws has a relative standard deviation of 26 %.
 TEST(Rig, StandardDeviationOfTheScaleIncludesTheBase) {
