@@ -91,8 +91,7 @@ void Refining::set_known() {
       add_known(options_.scale_from, options_.scale_sigma, options_.parsed.common.working_folder,
                 bundle(), adjust, unused_);
   adjust.poses_known = options_.poses == "known";
-  pose::set_estimated_numbers(options_.refine_list, options_.sigmas, bundle(), adjust,
-                              options_.parsed.option_of);
+  pose::set_estimated_numbers(options_.refine_list, options_.sigmas, bundle(), adjust);
   options_.refine.keep_stated = options_.refine_list == "auto";
   refined_.frame = adjust.positions.empty() ? input_.frame : enter_local_frame(adjust.positions);
 }
@@ -166,8 +165,7 @@ std::optional<Registered> register_photographs(const Options& options, Input& in
   if (options.usual_housing == "unknown" &&
       likely_kind(bundle, refining.adjust, Context()) == pose::PortKind::dome)
     bundle = bundle_of(options, input, usual_housing(pose::PortKind::dome)).bundle;
-  pose::set_estimated_numbers(options.refine_list, options.sigmas, bundle, refining.adjust,
-                              options.parsed.option_of);
+  pose::set_estimated_numbers(options.refine_list, options.sigmas, bundle, refining.adjust);
   log_info("{}: seeks poses of {} photographs without a pose among {} with poses",
            options.database.string(), input.model.images.size() - input.left_out->first,
            input.left_out->first);
