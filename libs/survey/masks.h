@@ -8,7 +8,6 @@
 #include <mutex>
 #include <opencv2/core.hpp>
 #include <span>
-#include <string>
 
 #include "survey/survey.h"
 

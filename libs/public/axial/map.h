@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
