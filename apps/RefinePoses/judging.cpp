@@ -59,7 +59,7 @@ void judge(const Options& options, const Refined& refined, Results& results) {
   }
 }
 
-void judge_numbers(const Options& options, const pose::Uncertainty& known, const Results& results) {
+void judge_numbers(const pose::Uncertainty& known, const Results& results) {
   if (const auto line = scale_warning(results, known)) log_warning("{}", *line);
   if (const auto line = shape_warning(results, known)) log_warning("{}", *line);
   if (const auto line = depth_warning(known)) log_warning("{}", *line);

@@ -32,7 +32,7 @@ void finish(const Options& options, const Input& input, const Refined& refined,
     log_info("{}", shape_line(known));
     log_info("{}", depth_line(known));
   }
-  judge_numbers(options, known, results);
+  judge_numbers(known, results);
 }
 
 int run(int argc, char** argv) {
