@@ -6,6 +6,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/naming.h"
 #include "base/program.h"
 #include "base/same_file.h"
 #include "base/version.h"
@@ -45,11 +46,7 @@ Options parse_command_line(int argc, const char* const* argv) {
 
 evaluate::CentreAlignment align(const io::ColmapModel& model, const io::ColmapModel& reference,
                                 const fs::path& folder) {
-  try {
-    return evaluate::align_centres(model, reference);
-  } catch (const Error& error) {
-    fail("{}: {}", folder.string(), error.what());
-  }
+  return naming(folder, [&] { return evaluate::align_centres(model, reference); });
 }
 
 int run(int argc, char** argv) {

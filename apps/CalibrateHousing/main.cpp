@@ -20,8 +20,7 @@ namespace fs = std::filesystem;
 io::ColmapCamera load_lens(const fs::path& path) {
   const std::vector<io::ColmapCamera> cameras = io::read_colmap_cameras(path);
   if (cameras.size() != 1)
-    fail("{}: has {} cameras, expected one: the camera to calibrate", path.string(),
-         cameras.size());
+    fail_in(path, "has {} cameras, expected one: the camera to calibrate", cameras.size());
   return cameras.front();
 }
 
@@ -52,8 +51,8 @@ refractive::Port<double> known_port(const Options& options, const io::Housing& h
     fail("--port {}: {} has no such port", name, options.housing.string());
   const auto port = housing.carried_port(name);
   if (!port)
-    fail("{}: camera {} is behind port 'none', expected the port to calibrate",
-         options.housing.string(), camera);
+    fail_in(options.housing, "camera {} is behind port 'none', expected the port to calibrate",
+            camera);
   return *port;
 }
 
@@ -80,8 +79,7 @@ void set_unknown(Options& options, const refractive::Port<double>& port) {
   camera.cameras[0].measured.port = port;
   pose::AdjustOptions& adjust = options.calibrate.adjust;
   adjust.points_known = true;
-  pose::set_free_numbers(options.refine_list, options.sigmas, camera, adjust,
-                         options.parsed.option_of);
+  pose::set_free_numbers(options.refine_list, options.sigmas, camera, adjust);
   check_limits(options, port);
   if (adjust.free[pose::kFocalNumber])
     fail("--refine {}: the focal length cannot be refined, it stays as calibrated in air",
@@ -167,8 +165,7 @@ int run(int argc, char** argv) {
   set_unknown(options, port);
   const std::vector<fs::path> photographs = calibrate::photographs_in(options.input);
   check_outputs(options, photographs);
-  const auto views = calibrate::find_views(photographs, options.board, lens, options.bit_depth,
-                                           options.parsed.option_of("bit_depth"));
+  const auto views = calibrate::find_views(photographs, options.board, lens, options.bit_depth);
   const auto calibration = calibrate::calibrate(
       lens, port, views, calibrate::corners_of(options.board), options.calibrate);
   const std::vector<std::string> lines = report_lines(calibration, port_name);

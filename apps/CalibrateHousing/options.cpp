@@ -16,7 +16,7 @@ calibrate::Board board_of(const std::string& text) {
   try {
     return calibrate::parse_board(text);
   } catch (const Error& error) {
-    fail("--board {}", error.what());
+    fail("--board {}", error.text());
   }
 }
 

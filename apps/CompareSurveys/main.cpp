@@ -60,7 +60,7 @@ Mesh read_survey(const fs::path& path, const fs::path& scene, const LocalFrame& 
   mesh.colors = {};
   naming(path, [&] { check_mesh(mesh); });
   remove_marked_faces(mesh);
-  if (mesh.faces.empty()) fail("{}: all faces are marked as unseen", path.string());
+  if (mesh.faces.empty()) fail_in(path, "all faces are marked as unseen");
   log_info("{}: {} vertices, {} faces", path.string(), mesh.vertices.size(), mesh.faces.size());
   return_freed_memory();
   return mesh;
@@ -84,7 +84,7 @@ std::vector<geometry::PosedCamera> read_photos(const Settings& settings, const f
   survey::Survey scene = survey::open_scene(options, context);
   enter(LocalFrame{frame.origin - scene.frame.origin}, scene.scene);
   photos = geometry::posed_cameras(scene.scene);
-  if (photos.empty()) fail("{}: has no calibrated image", path.string());
+  if (photos.empty()) fail_in(path, "has no calibrated image");
   belong::check_surface(scene.scene, belong::shape_of(survey.mesh), {survey.path, path}, context);
   return photos;
 }
@@ -152,12 +152,12 @@ void check_up(const Settings& settings, const LocalFrame& frame, const Eigen::Ve
     fail("--up {}: points away from {} {}, so that what came would count as gone; give --up {}{}",
          map::up_text(up), what, name, map::up_text(-up), remedy);
   if (has_system(settings, frame))
-    fail(
-        "{}: z points away from {} the mesh, so that what came would count as gone: are the "
-        "positions depths, positive downwards, or do they state northing before easting?{}",
-        name, what, remedy);
-  fail("{}: is turned to the other side than {}: one of the meshes is inside out{}", name,
-       settings.before.string(), remedy);
+    fail_in(name,
+            "z points away from {} the mesh, so that what came would count as gone: are the "
+            "positions depths, positive downwards, or do they state northing before easting?{}",
+            what, remedy);
+  fail_in(name, "is turned to the other side than {}: one of the meshes is inside out{}",
+          settings.before.string(), remedy);
 }
 
 map::MapFrame place_map(const Settings& settings, const Mesh& mesh, const LocalFrame& frame,
@@ -249,7 +249,7 @@ int run(int argc, char** argv) {
   const Context context = program_context(options.parsed);
   compare::ChangeFacts facts{settings.before.filename().string(),
                              settings.after.filename().string()};
-  if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg, settings.compare.name_of);
+  if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg);
   const OutputLock lock = lock_output(change_files(settings).difference);
   const LocalFrame frame = frame_of_survey(settings.before, settings.scene_before, context);
   facts.mesh_frame = frame;

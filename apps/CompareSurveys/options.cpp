@@ -86,9 +86,8 @@ void convert(const Raw& raw, Options& options) {
   settings.working_folder = in_working_folder(options.parsed.common, ".");
   settings.output =
       output_or(settings.output, without_known_extension(settings.before), "--output-file");
-  settings.up = map::parse_up(raw.up, settings.epsg, options.parsed.option_of);
+  settings.up = map::parse_up(raw.up, settings.epsg);
   if (raw.sigma_before) settings.compare.sigmas = {*raw.sigma_before, *raw.sigma_after};
-  settings.compare.name_of = options.parsed.option_of;
 }
 
 }  // namespace

@@ -135,7 +135,7 @@ class ConfigFile {
     if (is_decoration(line)) return;
     const std::size_t sign = line.find('=');
     if (sign == std::string_view::npos)
-      fail("{}: line {} is not 'title = value': {}", name_, number_, line);
+      fail_in(name_, "line {} is not 'title = value': {}", number_, line);
     set(std::string(title_of(line.substr(0, sign))), trimmed(line.substr(sign + 1)));
   }
 
@@ -153,10 +153,10 @@ class ConfigFile {
     for (const Setting& setting : entries_) {
       if (title != setting.title) continue;
       const std::optional<double> value = parse_finite<double>(text);
-      if (!value) fail("{}: line {}: {} is '{}', expected a number", name_, number_, title, text);
+      if (!value) fail_in(name_, "line {}: {} is '{}', expected a number", number_, title, text);
       if (!(*value >= setting.low && *value <= setting.high))
-        fail("{}: line {}: {} is {}: must be from {} to {}", name_, number_, title, *value,
-             setting.low, setting.high);
+        fail_in(name_, "line {}: {} is {}: must be from {} to {}", number_, title, *value,
+                setting.low, setting.high);
       // A value written by this program is rounded: it must not change the last bits of the current
       // value.
       if (shown(*value) != shown(setting.get())) setting.set(*value);

@@ -305,7 +305,6 @@ void convert(const Raw& raw, Options& options) {
                                                   : static_cast<RegionMode>(int(raw.estimate_roi));
   settings.fusion.two_if_undisputed = !given(options.parsed, "number-views-fuse");
   settings.matching.pictures = pictures_of(common.verbosity);
-  settings.survey.files.name_of = options.parsed.option_of;
   settings.job = job_of(raw, options.parsed);
   take_tiling(raw, options.parsed, settings);
   densify::check(settings);

@@ -70,14 +70,14 @@ void refuse_if_far(const Options& options, const Input& input, const Mesh& truth
   };
   const std::span<const Eigen::Vector3f> all = input.positions();
   if (2 * std::ranges::count_if(all, is_far) > std::ssize(all))
-    fail(
-        "{}: most of its points are more than {:.0f} km away from {}: the two files do not have "
-        "the same coordinates",
-        options.input.string(), kFar / 1000, options.truth.string());
+    fail_in(options.input,
+            "most of its points are more than {:.0f} km away from {}: the two files do not have "
+            "the same coordinates",
+            kFar / 1000, options.truth.string());
   const auto far = std::ranges::find_if(all, is_far);
   if (input.mesh && far != all.end())
-    fail("{}: vertex {} is more than {:.0f} km away from {}", options.input.string(),
-         far - all.begin(), kFar / 1000, options.truth.string());
+    fail_in(options.input, "vertex {} is more than {:.0f} km away from {}", far - all.begin(),
+            kFar / 1000, options.truth.string());
 }
 
 struct Alignment {
@@ -136,8 +136,7 @@ PointCloud counted_points(const Options& options, Input& input,
   keep_only(input.uncertainty.views, keep);
   keep_only(input.uncertainty.error, keep);
   keep_only(input.uncertainty.confidence, keep);
-  if (counted.positions.empty())
-    fail("{}: no point lies in enough of the images", options.input.string());
+  if (counted.positions.empty()) fail_in(options.input, "no point lies in enough of the images");
   return counted;
 }
 
@@ -149,7 +148,7 @@ const evaluate::View* view_of_picture(const Options& options,
     return options.picture_camera.empty() || candidate.name == options.picture_camera;
   });
   if (view == views.end())
-    fail("--picture-camera {}: no such image in {}", options.picture_camera,
+    fail("{} {}: no such image in {}", setting("picture_camera"), options.picture_camera,
          options.cameras.string());
   return &*view;
 }

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/naming.h"
 #include "evaluate/depth_evaluation.h"
 #include "evaluate/pictures.h"
 #include "evaluate/report.h"
@@ -42,13 +43,8 @@ nlohmann::ordered_json run_depth_map(const Options& options) {
              truth.rows, map.width(), map.height());
   evaluate::DepthOptions settings;
   settings.tolerances = options.tolerances;
-  const evaluate::DepthEvaluation result = [&] {
-    try {
-      return evaluate::evaluate_depth(map.depth, truth, settings);
-    } catch (const Error& error) {
-      fail("{}: {}", options.input.string(), error.what());
-    }
-  }();
+  const evaluate::DepthEvaluation result =
+      naming(options.input, [&] { return evaluate::evaluate_depth(map.depth, truth, settings); });
   fmt::print("{}", evaluate::table(result));
   if (!options.picture.empty())
     io::write_png(options.picture,

@@ -69,7 +69,7 @@ Input read_input(const Options& options, const LocalFrame& frame) {
     input.cloud = io::read_cloud_ply(path, frame);
     input.uncertainty = read_uncertainty(path, input.cloud);
   }
-  if (input.positions().empty()) fail("{}: the cloud has no points", path.string());
+  if (input.positions().empty()) fail_in(path, "the cloud has no points");
   return input;
 }
 

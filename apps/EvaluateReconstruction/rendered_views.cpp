@@ -28,7 +28,7 @@ std::vector<View> chosen_views(const Options& options, std::span<const View> vie
   for (const std::string& name : options.rendered_views) {
     const auto view = std::ranges::find(views, name, &View::name);
     if (view == views.end())
-      fail("--render {}: no such image in {}", name, options.cameras.string());
+      fail("{} {}: no such image in {}", setting("render"), name, options.cameras.string());
     chosen.push_back(*view);
   }
   return chosen;
@@ -47,8 +47,7 @@ bool has_colors(const Input& input) {
 fs::path picture_path(const Options& options, const std::string& name, const char* ending) {
   const fs::path image(name);
   if (image.is_absolute() || std::ranges::find(image, fs::path("..")) != image.end())
-    fail("{}: the image name {} leaves the folder of --render-folder", options.cameras.string(),
-         name);
+    fail_in(options.cameras, "the image name {} leaves the folder of --render-folder", name);
   fs::path path = (options.render_folder / image).replace_extension();
   return path += ending + ("." + options.render_type);
 }
@@ -57,8 +56,8 @@ fs::path picture_path(const Options& options, const std::string& name, const cha
 void check_photograph(const fs::path& photograph, const View& view) {
   const cv::Size size = io::read_color_image(photograph).size();
   if (size != cv::Size(view.camera.width, view.camera.height))
-    fail("{}: is {} x {}, but its camera is {} x {}", photograph.string(), size.width, size.height,
-         view.camera.width, view.camera.height);
+    fail_in(photograph, "is {} x {}, but its camera is {} x {}", size.width, size.height,
+            view.camera.width, view.camera.height);
 }
 
 void check_pictures(const Options& options, std::span<const RenderTask> tasks) {
@@ -70,9 +69,9 @@ void check_pictures(const Options& options, std::span<const RenderTask> tasks) {
   for (const RenderTask& task : tasks)
     for (const fs::path& picture : {task.picture, task.errors}) {
       if (picture.empty()) continue;
-      require_not_an_input(picture, inputs, "--render-folder");
+      require_not_an_input(picture, inputs, setting("render_folder"));
       if (!pictures.insert(picture).second)
-        fail("{}: the pictures of two views would have this name", picture.string());
+        fail_in(picture, "the pictures of two views would have this name");
     }
   require_writable_folder(options.render_folder);
 }
@@ -154,12 +153,11 @@ std::vector<RenderTask> plan_rendering(const Options& options, const Input& inpu
   std::vector<RenderTask> tasks;
   if (options.rendered_views.empty()) return tasks;
   if (!has_colors(input) && !options.photographs.empty())
-    fail("{}: the mesh has neither a texture nor colours, which --photographs needs",
-         options.input.string());
+    fail_in(options.input, "the mesh has neither a texture nor colours, which --photographs needs");
   if (!has_colors(input) && !has_truth)
-    fail(
-        "{}: the mesh has neither a texture nor colours; with --truth-file it is coloured by error",
-        options.input.string());
+    fail_in(
+        options.input,
+        "the mesh has neither a texture nor colours; with --truth-file it is coloured by error");
   for (const View& view : chosen_views(options, views)) {
     RenderTask& task = tasks.emplace_back();
     task.view = view;

@@ -39,6 +39,7 @@ void declare(OptionList& list, Options& options) {
       .output_file()
       .add_with_default("motion", &options.motion,
                         "motion of the picture between chosen frames, as a share of its width")
+      .sets("share")
       .add_with_default("jpeg-quality", &options.quality, "quality of the JPEG files, 1 to 100")
       .range(1, 100)
       .add_switch("png", &options.png, "write PNG files in place of JPEG files");
@@ -50,8 +51,7 @@ void check(const Options& options) {
   std::set<std::string> stems;
   for (const fs::path& clip : options.clips)
     if (!stems.insert(clip.stem().string()).second)
-      fail("{}: another clip has the name {}, too; rename one of them", clip.string(),
-           clip.stem().string());
+      fail_in(clip, "another clip has the name {}, too; rename one of them", clip.stem().string());
   if (!options.json.empty()) require_not_an_input(options.json, options.clips, "--json");
 }
 
@@ -97,9 +97,8 @@ void warn_of_rolling_shutter(const video::ChosenFrames& found) {
 }
 
 video::ChosenFrames choose(const fs::path& clip, const Options& options) {
-  video::ChosenFrames found =
-      video::choose_in_clip(clip, options.motion, "--motion",
-                            console_progress("Measured frames of " + clip.filename().string()));
+  video::ChosenFrames found = video::choose_in_clip(
+      clip, options.motion, console_progress("Measured frames of " + clip.filename().string()));
   log_info("{}: {} of {} frames chosen, {} x {} pixels, {:.1f} s", clip.string(),
            found.chosen.size(), found.frames.size(), found.size.width, found.size.height,
            static_cast<double>(found.frames.size()) / found.frames_per_second);

@@ -21,7 +21,7 @@ void add_folder(const fs::path& folder, std::vector<NamedPhotograph>& photograph
 std::vector<NamedPhotograph> photographs_of(std::span<const fs::path> input) {
   std::vector<NamedPhotograph> photographs;
   for (const fs::path& path : input) {
-    if (!fs::exists(path)) fail("{}: does not exist", path.string());
+    if (!fs::exists(path)) fail_in(path, "does not exist");
     if (fs::is_directory(path))
       add_folder(path, photographs);
     else
@@ -30,7 +30,7 @@ std::vector<NamedPhotograph> photographs_of(std::span<const fs::path> input) {
   std::ranges::sort(photographs, {}, &NamedPhotograph::name);
   const auto same = std::ranges::adjacent_find(photographs, {}, &NamedPhotograph::name);
   if (same != photographs.end())
-    fail("{}: has the same name as {}", (same + 1)->file.string(), same->file.string());
+    fail_in((same + 1)->file, "has the same name as {}", same->file.string());
   return photographs;
 }
 

@@ -134,10 +134,9 @@ void check_export_folder(const fs::path& folder) {
   const bool exported = is_export(folder);
   for (const fs::path& file : model_files(folder))
     if (fs::exists(file, error) && !(exported && file.extension() == ".txt"))
-      fail(
-          "{}: belongs to a model that is not an export, and is not overwritten: give another "
-          "folder with --output-file",
-          file.string());
+      fail_in(file,
+              "belongs to a model that is not an export, and is not overwritten: give another "
+              "folder with --output-file");
 }
 
 // The part of the log line about images that do not exist. A scene's paths count from the working

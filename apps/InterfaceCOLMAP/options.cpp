@@ -126,7 +126,7 @@ void set_import(const Values& values, Options& options) {
     log_warning("--force-points: without effect: sparse points are always written");
   std::error_code error;
   if (!fs::is_directory(options.colmap_folder, error))
-    fail("{}: is not a folder", options.colmap_folder.string());
+    fail_in(options.colmap_folder, "is not a folder");
   options.named_output = in_working_folder(common, values.output);
   options.scene_file =
       with_extension(output_or(output_in_working_folder(common, values.output, "--output-file"),
@@ -146,7 +146,6 @@ void set_masks(const Values& values, Options& options) {
   options.masks.masks = values.mask_path;
   options.masks.label = values.mask_label;
   options.masks.output = in_working_folder(common, values.output);
-  options.masks.name_of = options.parsed.option_of;
   if (!fs::is_directory(options.masks.images, error))
     fail("--input-file {}: must be the folder of the photographs, because --mask-path is given",
          values.input);

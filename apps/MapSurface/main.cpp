@@ -76,7 +76,7 @@ TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame, const 
   } else {
     mesh.mesh = io::read_mesh_of_scene(frame, settings.mesh);
   }
-  if (mesh.mesh.faces.empty()) fail("{}: the mesh has no faces", settings.mesh.string());
+  if (mesh.mesh.faces.empty()) fail_in(settings.mesh, "the mesh has no faces");
   log_info("{}: {} vertices, {} faces, {} textures", settings.mesh.string(),
            mesh.mesh.vertices.size(), mesh.mesh.faces.size(), mesh.textures.size());
   mesh.mesh.colors = {};  // the textures give the colours
@@ -85,7 +85,7 @@ TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame, const 
     return remove_marked_faces(mesh);
   });
   if (unseen > 0) log_info("{} faces are left out: they are marked as unseen", unseen);
-  if (mesh.mesh.faces.empty()) fail("{}: all faces are marked as unseen", settings.mesh.string());
+  if (mesh.mesh.faces.empty()) fail_in(settings.mesh, "all faces are marked as unseen");
   return mesh;
 }
 
@@ -130,9 +130,9 @@ void check_up(const Settings& settings, const Eigen::Vector3d& up, const Eigen::
   if (!map::shows_far_side(up, facing)) return;
   if (settings.up && settings.epsg == 0)
     fail(
-        "--up {}: points away from the cameras, so that the map would show the far side of the "
-        "surface; give --up {}",
-        map::up_text(up), map::up_text(-up));
+        "{} {}: points away from the cameras, so that the map would show the far side of the "
+        "surface; give {} {}",
+        setting("up"), map::up_text(up), setting("up"), map::up_text(-up));
   log_warning(
       "{}: the cameras are below the surface that they see, and the map shows its far side: are "
       "the positions depths, positive downwards, or do they state northing before easting?",
@@ -149,7 +149,7 @@ void require_resolved(const map::MapGrid& grid, const survey::Survey& survey) {
         "the map would have {} x {} pixels of {:.4g} m, and all photographs together have {:.0f} "
         "times fewer: remove parts of the mesh that lie far away, or give a larger {}",
         grid.columns, grid.rows, grid.pixel, static_cast<double>(grid.pixels()) / pixels,
-        survey.options.files.name_of("ground_sample_distance"));
+        setting("ground_sample_distance"));
 }
 
 double pixel_of(const Settings& settings, const Mesh& mesh, const survey::Survey& survey,
@@ -183,8 +183,7 @@ PlacedMap place_map(const Settings& settings, const Mesh& mesh, const survey::Su
   map.mesh_frame = frame;
   map.frame = map::frame_with_up(up, frame);
   map.is_georeferenced = has_system && map.frame.axes.isIdentity(0);
-  map.grid = map::grid_around(mesh, map.frame, pixel_of(settings, mesh, survey, context),
-                              settings.survey.files.name_of);
+  map.grid = map::grid_around(mesh, map.frame, pixel_of(settings, mesh, survey, context));
   require_resolved(map.grid, survey);
   const auto& axes = map.frame.axes;
   log_info("map of {} x {} pixels of {:.4g} m", map.grid.columns, map.grid.rows, map.grid.pixel);
@@ -251,13 +250,11 @@ FaceFacts look_at_faces(const Mesh& mesh, const survey::Photographs& photographs
 }
 
 // Gives the mesh textures. `facts`: of the faces of the textured mesh.
-TexturedMesh textured(TexturedMesh mesh, const Settings& settings,
-                      const survey::Photographs& photographs,
+TexturedMesh textured(TexturedMesh mesh, const survey::Photographs& photographs,
                       const std::optional<map::HeightErrors>& errors, FaceFacts& facts,
                       const Context& context) {
   texture::Options options;
   options.image_bytes = photographs.bytes_to_read_color();
-  options.name_of = settings.survey.files.name_of;
   options.take_views = [&](const Mesh& split, const texture::FaceViews& seen) {
     facts = facts_of(split, seen, errors);
   };
@@ -276,7 +273,6 @@ void write(const Settings& settings, const TexturedMesh& mesh, const FaceFacts& 
   options.is_georeferenced = place.is_georeferenced;
   options.mesh_frame = place.mesh_frame;
   options.contour_interval = settings.contours;
-  options.name_of = settings.survey.files.name_of;
   const map::MapFiles files = map_files(settings);
   const map::MapReport report = map::write_maps(
       files, {mesh, facts.views, facts.errors, place.frame, place.grid}, options, context);
@@ -295,8 +291,7 @@ int run(int argc, char** argv) {
   share_one_heap();
   const Settings& settings = options.settings;
   const Context context = program_context(options.parsed);
-  const std::string crs =
-      settings.epsg > 0 ? map::crs_of_epsg(settings.epsg, settings.survey.files.name_of) : "";
+  const std::string crs = settings.epsg > 0 ? map::crs_of_epsg(settings.epsg) : "";
   const OutputLock lock = lock_output(map_files(settings).heights);
   survey::Survey survey = survey::open_scene(settings.survey, context);
   TexturedMesh mesh = read_mesh(settings, survey.frame, context);
@@ -311,18 +306,18 @@ int run(int argc, char** argv) {
   naming(settings.mesh, [&] {
     const Eigen::Vector3d facing = keep_seen_part(settings, survey, mesh, context);
     const PlacedMap place = place_map(settings, mesh.mesh, survey, facing, context);
-    survey.keep_inputs(map_files(settings).all(), "--output-file");
+    survey.keep_inputs(map_files(settings).all(), setting("output_file"));
     std::optional<map::HeightErrors> errors;
     if (settings.image_noise > 0)
       errors.emplace(survey::posed_cameras(survey), place.frame.axes.row(2).transpose(),
                      settings.image_noise);
     FaceFacts facts;
     if (mesh.textures.empty())
-      mesh = textured(std::move(mesh), settings, photographs, errors, facts, context);
+      mesh = textured(std::move(mesh), photographs, errors, facts, context);
     else
       facts = look_at_faces(mesh.mesh, photographs, errors, context);
     return_freed_memory();
-    already_named([&] { photographs.report(context); });
+    photographs.report(context);
     write(settings, mesh, facts, place, crs, context);
   });
   return 0;

@@ -87,7 +87,7 @@ void convert(const Raw& raw, Options& options) {
   if (settings.mesh.empty()) settings.mesh = io::cloud_beside(scene);
   settings.output =
       output_or(settings.output, without_known_extension(scene) += "_map", "--output-file");
-  settings.up = map::parse_up(raw.up, settings.epsg, options.parsed.option_of);
+  settings.up = map::parse_up(raw.up, settings.epsg);
   take_photographs(options, raw, settings.survey);
 }
 

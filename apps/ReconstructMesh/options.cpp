@@ -94,9 +94,8 @@ void declare_cleaning(OptionList& list, Options& options) {
 
 void take_paths(const Raw& raw, Options& options) {
   options.survey.files = io::scene_files(raw.scene, raw.input, options.parsed);
-  options.output =
-      io::mesh_file({options.survey.files.scene, options.output, raw.export_type,
-                     given(options.parsed, "export-type"), "_mesh", options.parsed.option_of});
+  options.output = io::mesh_file({options.survey.files.scene, options.output, raw.export_type,
+                                  given(options.parsed, "export-type"), "_mesh"});
   refuse_control_characters(options.output, "--output-file");
 }
 
@@ -112,7 +111,7 @@ void refuse_other_triangles(const std::string& option, const Options& options) {
 void take_tiles(const Raw& raw, Options& options) {
   Tiling& tiling = options.tiling;
   if (given(options.parsed, "tile")) take_tile(raw.tile, options.parsed, tiling);
-  const std::string option = text_of(tiling, options.parsed.option_of);
+  const std::string option = text_of(tiling);
   if (tiling.tile && tiling.count == 1) fail("{}: there must be at least 2 tiles", option);
   if (tiling.count > 1) refuse_other_triangles(option, options);
 }
@@ -151,7 +150,6 @@ Options parse_command_line(int argc, const char* const* argv) {
   options.reconstruct.clean.cut_off = options.reconstruct.clean.spurious;
   take_paths(raw, options);
   take_tiles(raw, options);
-  options.reconstruct.name_of = options.parsed.option_of;
   warn_of_no_effect(options);
   return options;
 }

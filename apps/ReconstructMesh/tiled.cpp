@@ -32,7 +32,7 @@ fs::path tile_folder(const Options& options) {
 
 void add(const mesh::ReconstructOptions& options, Fingerprint& print) {
   // A new option does not compile until it has a name here.
-  const auto& [merge, votes, clean, only_region, crop_to_region, name_of] = options;
+  const auto& [merge, votes, clean, only_region, crop_to_region] = options;
   const auto& [min_distance, most_points] = merge;
   const auto& [constant_weight, weak_support, thickness, quality] = votes;
   const auto& [decimate, target_faces, spurious, spikes, close_holes, smooth, edge_length, cut_off,

@@ -44,7 +44,7 @@ Mesh read_mesh(const Options& options, const LocalFrame& frame, bool& has_marks,
                            "reading " + options.mesh.string());
   Mesh mesh = io::read_mesh_of_scene(frame, options.mesh);
   naming(options.mesh, [&] { check_mesh(mesh); });
-  if (mesh.faces.empty()) fail("{}: the mesh has no faces", options.mesh.string());
+  if (mesh.faces.empty()) fail_in(options.mesh, "the mesh has no faces");
   context.info("Mesh {}: {} vertices, {} faces", options.mesh.filename().string(),
                mesh.vertices.size(), mesh.faces.size());
   has_marks = !mesh.unseen.empty();
@@ -76,7 +76,7 @@ Shares share_out(const MemoryBudget& memory, const survey::Survey& survey) {
   shares.images = std::clamp<std::size_t>(room / 8 / std::max<std::uint64_t>(image, 1), 2,
                                           std::max<std::size_t>(survey.views.size(), 2));
   const std::uint64_t images = std::min(room, shares.images * image);
-  shares.for_refinement = MemoryBudget::of_bytes(room - images, memory.setting());
+  shares.for_refinement = MemoryBudget::of_bytes(room - images);
   return shares;
 }
 

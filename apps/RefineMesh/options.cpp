@@ -97,9 +97,8 @@ void take_paths(const Raw& raw, Options& options) {
     survey.ignore_mask_label = 0;
   survey.compares_photographs = true;
   if (options.mesh.empty()) options.mesh = io::cloud_beside(survey.files.scene);
-  options.output =
-      io::mesh_file({survey.files.scene, options.output, raw.export_type,
-                     given(options.parsed, "export-type"), "_refine", options.parsed.option_of});
+  options.output = io::mesh_file({survey.files.scene, options.output, raw.export_type,
+                                  given(options.parsed, "export-type"), "_refine"});
   refuse_control_characters(options.output, "--output-file");
 }
 

@@ -41,7 +41,7 @@ class Photographs {
     const io::ImageLabels::Match match = labels_.find(name);
     if (match.images.empty()) return {};
     if (match.images.size() > 1)
-      fail("{}: '{}' is the name of {} photographs of the model", where, name, match.images.size());
+      fail_in(where, "'{}' is the name of {} photographs of the model", name, match.images.size());
     return match.images.front();
   }
 

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/files_in.h"
 #include "base/log.h"
+#include "base/naming.h"
 #include "base/same_file.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/other_ports.h"
@@ -141,11 +142,7 @@ void check_output(const Options& options, const Input& input) {
 pose::ColmapBundle bundle_of(const Options& options, const Input& input,
                              const io::Housing& housing) {
   const fs::path& file = options.lens.empty() ? options.model : options.lens;
-  try {
-    return pose::to_bundle(input.model, input.lenses, housing);
-  } catch (const Error& error) {
-    fail("{}: {}", file.string(), error.what());
-  }
+  return naming(file, [&] { return pose::to_bundle(input.model, input.lenses, housing); });
 }
 
 void check_ports(const Options& options, const Input& input, const pose::Bundle& bundle) {

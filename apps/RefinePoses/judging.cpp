@@ -59,7 +59,7 @@ void judge(const Options& options, const Refined& refined, Results& results) {
   }
 }
 
-void judge_numbers(const Options& options, const pose::Uncertainty& known, const Results& results) {
+void judge_numbers(const pose::Uncertainty& known, const Results& results) {
   if (const auto line = scale_warning(results, known)) log_warning("{}", *line);
   if (const auto line = shape_warning(results, known)) log_warning("{}", *line);
   if (const auto line = depth_warning(known)) log_warning("{}", *line);
@@ -69,7 +69,7 @@ void judge_numbers(const Options& options, const pose::Uncertainty& known, const
   const double scale_sigma =
       results.scale_lost ? std::numeric_limits<double>::infinity() : known.scale_sigma;
   if (const auto freed = diagnosis::number_that_does_not_fit(results.bundle, results.options))
-    log_warning("{}", diagnosis::text_of(*freed, scale_sigma, options.parsed.option_of));
+    log_warning("{}", diagnosis::text_of(*freed, scale_sigma));
 }
 
 }  // namespace axial::apps

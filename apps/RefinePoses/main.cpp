@@ -38,7 +38,7 @@ void finish(const Options& options, const Input& input, const Refined& refined,
     for (const std::string& line : control_warnings(*results.control)) log_warning("{}", line);
   }
   for (const std::string& line : rig_warnings(refined.after.bundle, known)) log_warning("{}", line);
-  judge_numbers(options, known, results);
+  judge_numbers(known, results);
 }
 
 int run(int argc, char** argv) {

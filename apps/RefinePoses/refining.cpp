@@ -101,8 +101,7 @@ void Refining::set_known() {
     refined_.control = add_control(input_.control, refined_.after.bundle, options_.refine);
   adjust.poses_known = options_.poses == "known";
   refined_.after.bundle.rigs = read_rigs(options_.rigs, input_.model);
-  pose::set_estimated_numbers(options_.refine_list, options_.sigmas, bundle(), adjust,
-                              options_.parsed.option_of);
+  pose::set_estimated_numbers(options_.refine_list, options_.sigmas, bundle(), adjust);
   options_.refine.keep_stated = options_.refine_list == "auto";
   refined_.frame = enter_local_frame(input_.frame, adjust, refined_.control.checks.places);
 }
@@ -179,8 +178,7 @@ std::optional<Registered> register_photographs(const Options& options, Input& in
   if (options.usual_housing == "unknown" &&
       likely_kind(bundle, refining.adjust, Context()) == pose::PortKind::dome)
     bundle = bundle_of(options, input, usual_housing(pose::PortKind::dome)).bundle;
-  pose::set_estimated_numbers(options.refine_list, options.sigmas, bundle, refining.adjust,
-                              options.parsed.option_of);
+  pose::set_estimated_numbers(options.refine_list, options.sigmas, bundle, refining.adjust);
   log_info("{}: seeks poses of {} photographs without a pose among {} with poses",
            options.database.string(), input.model.images.size() - input.left_out->first,
            input.left_out->first);

@@ -64,7 +64,7 @@ pose::Uncertainty write_results(const fs::path& folder,
     return known;
   } catch (const std::exception& error) {
     fail("{}: contains the refined model, only its standard deviations are missing: {}",
-         folder.string(), is_out_of_memory(error) ? "memory ran out" : error.what());
+         folder.string(), is_out_of_memory(error) ? "memory ran out" : marked_text(error));
   }
 }
 

@@ -94,7 +94,7 @@ void judge(const Options& options, const Refined& refined, Results& results);
 
 // Warns about numbers of lens and port that do not fit the photographs, and about an unknown scale.
 // `known`: the standard deviations of the refined bundle.
-void judge_numbers(const Options& options, const pose::Uncertainty& known, const Results& results);
+void judge_numbers(const pose::Uncertainty& known, const Results& results);
 
 // Writes all files of the output folder by write_results(); then the lens and the housing again,
 // with their standard deviations. Sets Results::control. Returns the standard deviations. Error if

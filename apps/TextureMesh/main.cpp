@@ -28,7 +28,7 @@ Mesh read_mesh(const Settings& settings, const LocalFrame& frame, const Context&
   context.memory().require(io::bytes_to_read_mesh(settings.mesh),
                            "reading " + settings.mesh.string());
   Mesh mesh = io::read_mesh_of_scene(frame, settings.mesh);
-  if (mesh.faces.empty()) fail("{}: the mesh has no faces", settings.mesh.string());
+  if (mesh.faces.empty()) fail_in(settings.mesh, "the mesh has no faces");
   log_info("{}: {} vertices, {} faces", settings.mesh.string(), mesh.vertices.size(),
            mesh.faces.size());
   mesh.colors = {};  // the textured mesh has none
@@ -61,7 +61,7 @@ void keep_inputs(const Settings& settings, const survey::Survey& survey, std::si
                  std::size_t textures) {
   for (const io::TexturedFormat format : settings.formats)
     survey.keep_inputs(io::textured_files(output_of(settings, tile), format, textures),
-                       "--output-file");
+                       setting("output_file"));
 }
 
 // What the meshes of all tiles have.
@@ -119,7 +119,7 @@ void texture_and_write(const Settings& settings, const survey::Survey& survey, M
         std::move(mesh), survey::posed_cameras(survey), texture::source_of(photographs), options,
         [&](std::size_t tile, const TexturedMesh& textured) {
           return_freed_memory();
-          if (tile == 0) already_named([&] { photographs.report(context); });
+          if (tile == 0) photographs.report(context);
           keep_inputs(settings, survey, tile, textured.textures.size());
           written.textures += textured.textures.size();
           written.faces += textured.mesh.faces.size();

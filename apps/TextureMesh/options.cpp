@@ -134,7 +134,6 @@ void convert(const Raw& raw, Options& options) {
   settings.survey.files = io::scene_files(raw.scene, raw.input, options.parsed);
   if (settings.mesh.empty()) settings.mesh = io::cloud_beside(settings.survey.files.scene);
   take_output(raw, settings);
-  settings.texture.name_of = options.parsed.option_of;
   const bool masks_given =
       !settings.survey.mask_folder.empty() && !given(options.parsed, "ignore-mask-label");
   use_mask_label(settings.survey, masks_given ? 0 : raw.ignore_mask_label);

@@ -24,8 +24,7 @@ ConvertedMesh converted_mesh(const fs::path& input, const fs::path& output) {
   ConvertedMesh mesh{input, {output}, {}};
   if (!io::is_textured_mesh(input)) {
     if (format_of(output) == io::TexturedFormat::gltf)
-      fail("{}: has no textures, and is not written as gltf: choose ply, obj or glb",
-           input.string());
+      fail_in(input, "has no textures, and is not written as gltf: choose ply, obj or glb");
     return mesh;
   }
   mesh.look = io::read_textured_mesh(input);
@@ -40,7 +39,7 @@ void write_moved(const ConvertedMesh& mesh, const FrameMove& move,
   evaluate::apply(move.similarity, moved);
   for (std::size_t i = 0; i < moved.vertices.size(); ++i)
     if (!moved.vertices[i].allFinite())
-      fail("{}: vertex {} has no finite position after the transformation", mesh.input.string(), i);
+      fail_in(mesh.input, "vertex {} has no finite position after the transformation", i);
   if (mesh.look.textures.empty()) return io::write_mesh(temporaries[0], moved, move.to);
   TexturedMesh textured = mesh.look;
   textured.mesh = std::move(moved);

@@ -125,10 +125,10 @@ void check_scale(const Options& options, const io::SceneWithCameras& scene,
     const auto port = scene.housing->ports.find(image.port_name);
     if (port == scene.housing->ports.end() || std::holds_alternative<WaterSurface>(port->second))
       continue;
-    fail(
-        "{}: the transformation has the scale {:.9g}, but the lengths of port '{}' are known in "
-        "metres: use --rigid to align without a scale, or --scale-ports to scale the port, too",
-        options.survey.files.scene.string(), similarity.scale, image.port_name);
+    fail_in(options.survey.files.scene,
+            "the transformation has the scale {:.9g}, but the lengths of port '{}' are known in "
+            "metres: use --rigid to align without a scale, or --scale-ports to scale the port, too",
+            similarity.scale, image.port_name);
   }
 }
 

@@ -61,7 +61,7 @@ std::vector<SmallImage> find_large_images(unsigned max_resolution, const fs::pat
     const io::ImageHeader header = io::read_image_header(image.path);
     if (std::cmp_less_equal(std::max(header.size.width, header.size.height), max_resolution))
       continue;
-    if (header.alpha) fail("{}: not built yet: it has transparent pixels", image.path);
+    if (header.alpha) fail_in(image.path, "not built yet: it has transparent pixels");
     fs::path name = fs::path(image.path).lexically_normal().lexically_relative(common);
     if (!(is_jpeg_name(name) && header.bits == 8) && name.extension() != ".png") name += ".png";
     found.push_back({image.path, name, shrunk(header.size, max_resolution)});

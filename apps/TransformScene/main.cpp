@@ -170,17 +170,16 @@ void apply(const Options& options, const FrameMove& move, io::SceneWithCameras& 
 void require_writable_scene(const Options& options, const Scene& scene) {
   const std::string file = options.survey.files.scene.string();
   if (std::ranges::none_of(scene.images, &SceneImage::calibrated))
-    fail("{}: no image is calibrated", file);
+    fail_in(file, "no image is calibrated");
   for (std::size_t i = 0; i < scene.points.size(); ++i)
     if (!scene.points[i].position.allFinite())
-      fail("{}: point {} has no finite position after the transformation", file, i);
+      fail_in(file, "point {} has no finite position after the transformation", i);
 }
 
 void copy_texture(const TextureCopy& texture, const fs::path& temporary) {
   std::error_code error;
   if (!fs::copy_file(texture.from, temporary, error))
-    fail("{}: cannot be copied to {}: {}", texture.from.string(), texture.to.string(),
-         error.message());
+    fail_in(texture.from, "cannot be copied to {}: {}", texture.to.string(), error.message());
 }
 
 // A file to write, and how to write it under a temporary name. Without a function, the file is

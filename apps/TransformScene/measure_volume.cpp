@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/naming.h"
 #include "base/order_statistics.h"
 #include "evaluate/topology.h"
 #include "geometry/volume.h"
@@ -52,13 +53,7 @@ void measure(const Options& options, const Scene& scene, const FrameMove& move) 
 }  // namespace
 
 void measure_volume(const Options& options, const Scene& scene, const FrameMove& move) {
-  try {
-    measure(options, scene, move);
-  } catch (const Error& error) {
-    const std::string text = error.what(), file = options.mesh.string();
-    if (text.starts_with(file)) throw;
-    fail("{}: {}", file, text);
-  }
+  naming(options.mesh, [&] { measure(options, scene, move); });
 }
 
 }  // namespace axial::apps

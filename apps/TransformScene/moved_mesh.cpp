@@ -42,7 +42,7 @@ std::size_t count_of_samples(const Options& options, const Mesh& mesh) {
 
 Mesh moved_mesh(const Options& options, const FrameMove& move) {
   Mesh mesh = io::read_mesh_of_scene(move.from, options.mesh);
-  if (mesh.faces.empty()) fail("{}: the mesh has no faces", options.mesh.string());
+  if (mesh.faces.empty()) fail_in(options.mesh, "the mesh has no faces");
   evaluate::apply(move.similarity, mesh);
   return mesh;
 }

@@ -120,12 +120,11 @@ void check(const Options& options) {
   if (options.compute_volume && options.mesh.empty())
     fail("--compute-volume needs --mesh-file: the mesh whose volume is measured");
   if (!options.cloud.empty() && options.cloud.extension() != ".ply")
-    fail("{}: not built yet: clouds are read from PLY files alone", options.cloud.string());
+    fail_in(options.cloud, "not built yet: clouds are read from PLY files alone");
   const std::string kind = lower_extension(options.mesh);
   if (!options.mesh.empty() && kind != ".ply" && kind != ".obj" && kind != ".glb" &&
       kind != ".gltf")
-    fail("{}: not built yet: meshes are read from PLY, OBJ, GLB and glTF files",
-         options.mesh.string());
+    fail_in(options.mesh, "not built yet: meshes are read from PLY, OBJ, GLB and glTF files");
   if (!std::isfinite(options.plane_threshold))
     fail("--plane-threshold is {}: must be a length in metres", options.plane_threshold);
 }

@@ -33,14 +33,14 @@ TextureCopy copy_of(const fs::path& name, const fs::path& input, const fs::path&
   const std::string ply = input.string(), texture = copy.from.string();
   std::error_code ignored;
   if (*name.begin() == "..")
-    fail("{}: its texture {} cannot be copied, because it is outside of the folder of the mesh",
-         ply, texture);
-  if (!fs::is_regular_file(copy.from, ignored)) fail("{}: its texture {} is missing", ply, texture);
+    fail_in(ply, "its texture {} cannot be copied, because it is outside of the folder of the mesh",
+            texture);
+  if (!fs::is_regular_file(copy.from, ignored)) fail_in(ply, "its texture {} is missing", texture);
   if (!fs::exists(copy.to, ignored)) return copy;
   copy.needed = false;
   if (!fs::is_regular_file(copy.to, ignored) || !same_bytes(copy.from, copy.to))
-    fail("{}: exists and differs from {}, the texture of {}, which would replace it",
-         copy.to.string(), texture, ply);
+    fail_in(copy.to, "exists and differs from {}, the texture of {}, which would replace it",
+            texture, ply);
   return copy;
 }
 

@@ -60,7 +60,7 @@ void read_cloud(const Options& options, Contents& contents, const Context& conte
       [&](const PointCloud& portion, std::size_t all) { sample.add(portion, all); });
   contents.all_points = sample.added();
   contents.cloud = sample.take();
-  if (contents.cloud.size() == 0) fail("{}: the cloud has no points", options.cloud.string());
+  if (contents.cloud.size() == 0) fail_in(options.cloud, "the cloud has no points");
   log_info("{}: {} of {} points are shown", options.cloud.string(), contents.cloud.size(),
            contents.all_points);
   belong::check_surface(contents.survey.scene, belong::shape_of(contents.cloud),
@@ -95,7 +95,7 @@ void read_mesh(const Options& options, Contents& contents, const Context& contex
     contents.mesh = io::read_mesh_of_scene(frame, options.mesh);
     faces = contents.mesh->faces.size();
   }
-  if (faces == 0) fail("{}: the mesh has no faces", options.mesh.string());
+  if (faces == 0) fail_in(options.mesh, "the mesh has no faces");
   log_info("{}: {} faces", options.mesh.string(), faces);
   const Mesh& mesh = mesh_of(contents);
   naming(options.mesh, [&] { check_mesh(mesh); });

@@ -36,8 +36,8 @@ void check_photograph(const DepthMap& map, const SceneImage& image, const fs::pa
   const std::string of_map = fs::path(map.image_path).filename().string();
   const std::string of_scene = fs::path(image.path).filename().string();
   if (!of_map.empty() && of_map != of_scene)
-    fail("{}: is the depth map of {}, but image {} of the scene is {}", file.string(), of_map,
-         image.id, of_scene);
+    fail_in(file, "is the depth map of {}, but image {} of the scene is {}", of_map, image.id,
+            of_scene);
 }
 
 // `values` where the map has a depth, and NaN elsewhere.
@@ -133,7 +133,7 @@ Json write_depth_maps(const Scene& scene, const DepthMapOptions& options, const 
       entries[i] = write_depth_map(*images[i], i, options, staging);
     } catch (const Error& error) {
       if (options.is_given) throw;
-      log_warning("a depth map is left out: {}", error.what());
+      log_warning("a depth map is left out: {}", error.text());
     }
   });
   return entries;

@@ -27,7 +27,7 @@ void write(const fs::path& path, std::string_view text, std::ios::openmode mode)
   std::ofstream out(path, std::ios::binary | mode);
   out.write(text.data(), static_cast<std::streamsize>(text.size()));
   out.close();
-  if (!out) fail("{}: cannot be written", path.string());
+  if (!out) fail_in(path, "cannot be written");
 }
 
 // The list of the files that ViewScene wrote into `folder`. Empty if there is none.

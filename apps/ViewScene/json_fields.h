@@ -22,15 +22,14 @@ struct JsonField {
   [[noreturn]] void refuse(const std::string& wanted) const {
     std::string found = io::to_text(value);
     if (found.size() > 60) found = found.substr(0, 60) + "...";
-    fail("{}: {} {}: must be {}", file.string(), name.empty() ? "the content" : name, found,
-         wanted);
+    fail_in(file, "{} {}: must be {}", name.empty() ? "the content" : name, found, wanted);
   }
 
   // The field `key` of an object.
   JsonField at(const std::string& key) const {
     if (!value.is_object()) refuse("an object");
     const std::string inner = name.empty() ? key : name + "." + key;
-    if (!value.contains(key)) fail("{}: {} is missing", file.string(), inner);
+    if (!value.contains(key)) fail_in(file, "{} is missing", inner);
     return {file, inner, value[key]};
   }
 

@@ -61,7 +61,7 @@ class Layers {
     }
     if (map.grid.columns != grid_.columns || map.grid.rows != grid_.rows ||
         map.grid.left != grid_.left || map.grid.top != grid_.top || map.grid.pixel != grid_.pixel)
-      fail("{}: does not have the pixels of {}", file.string(), first_.string());
+      fail_in(file, "does not have the pixels of {}", first_.string());
     check_axes(map, file);
     return map;
   }
@@ -103,8 +103,8 @@ class Layers {
     // Their heights need not have the same origin: only horizontal places must agree.
     const Eigen::Vector3d shift = map.axes->offset - axes_->offset;
     if (!map.axes->axes.isApprox(axes_->axes, kTolerance) || shift.head<2>().norm() > kTolerance)
-      fail("{}: has other axes than {}; give MapSurface and CompareSurveys the same --up",
-           file.string(), of_axes_.string());
+      fail_in(file, "has other axes than {}; give MapSurface and CompareSurveys the same --up",
+              of_axes_.string());
   }
 
   const MapOptions& options_;

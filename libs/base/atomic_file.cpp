@@ -147,8 +147,8 @@ void require_regular(const std::filesystem::path& path) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
   if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return;
-  fail("{}: cannot be written: is {}", path.string(),
-       std::filesystem::is_directory(status) ? "a folder" : "not a regular file");
+  fail_in(path, "cannot be written: is {}",
+          std::filesystem::is_directory(status) ? "a folder" : "not a regular file");
 }
 
 }  // namespace
@@ -170,9 +170,9 @@ void AtomicFile::commit() {
     flush_to_disk(temporary_);
     std::filesystem::rename(temporary_, path_);
   } catch (const std::filesystem::filesystem_error& error) {
-    fail("{}: cannot be written: {}", path_.string(), error.code().message());
+    fail_in(path_, "cannot be written: {}", error.code().message());
   } catch (const Error& error) {
-    fail("{}: cannot be written: {}", path_.string(), error.what());
+    fail_in(path_, "cannot be written: {}", error.text());
   }
 }
 
@@ -184,9 +184,9 @@ void write_atomically(const std::filesystem::path& path,
   } catch (const std::bad_alloc&) {
     throw;  // the file is not the cause
   } catch (const std::filesystem::filesystem_error& error) {
-    fail("{}: cannot be written: {}", path.string(), error.code().message());
+    fail_in(path, "cannot be written: {}", error.code().message());
   } catch (const std::exception& error) {
-    fail("{}: cannot be written: {}", path.string(), error.what());
+    fail_in(path, "cannot be written: {}", marked_text(error));
   }
   file.commit();
 }
@@ -200,12 +200,14 @@ void write_under_name(const std::filesystem::path& temporary, const std::filesys
   try {
     write();
   } catch (const Error& error) {
-    std::string text = error.what();
     const std::string from = temporary.string(), to = named.string();
-    for (std::size_t at = text.find(from); at != std::string::npos;
-         at = text.find(from, at + to.size()))
-      text.replace(at, from.size(), to);
-    throw Error(text);
+    const auto renamed = [&](std::string text) {
+      for (std::size_t at = text.find(from); at != std::string::npos;
+           at = text.find(from, at + to.size()))
+        text.replace(at, from.size(), to);
+      return text;
+    };
+    throw Error(renamed(error.text()), renamed(error.file().string()));
   }
 }
 
@@ -268,7 +270,7 @@ class Staging {
     for (const std::filesystem::path& file : found) {
       make_folder((folder_ / file).parent_path());
       if (std::filesystem::is_directory(folder_ / file))
-        fail("{}: cannot be written: is a folder", (folder_ / file).string());
+        fail_in(folder_ / file, "cannot be written: is a folder");
     }
     for (const std::filesystem::path& file : found) std::filesystem::remove(folder_ / file);
     for (const std::filesystem::path& file : found) move(path_ / file, folder_ / file);
@@ -300,7 +302,7 @@ void write_folder(const std::filesystem::path& folder,
     write_under_name(staging.path(), target, [&] { write(staging.path()); });
     staging.commit();
   } catch (const std::filesystem::filesystem_error& error) {
-    fail("{}: cannot be written: {}", target.string(), error.code().message());
+    fail_in(target, "cannot be written: {}", error.code().message());
   }
 }
 
@@ -322,7 +324,7 @@ void try_temporary(const std::filesystem::path& temporary, const std::filesystem
   const int error = errno;
   std::error_code ignored;
   std::filesystem::remove(temporary, ignored);
-  if (!opened) fail("{}: cannot be written: {}", named.string(), std::strerror(error));
+  if (!opened) fail_in(named, "cannot be written: {}", std::strerror(error));
 }
 
 }  // namespace
@@ -348,26 +350,24 @@ void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (!std::filesystem::is_directory(folder))
-    fail("{}: cannot be created ({})", folder.string(), error.message());
+    fail_in(folder, "cannot be created ({})", error.message());
 }
 
 std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error))
-    fail("{}: is a folder, not a file", path.string());
+  if (std::filesystem::is_directory(path, error)) fail_in(path, "is a folder, not a file");
   // A pipe could block the reader, and it has no size against which a reader can check counts.
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
-    fail("{}: is not a regular file", path.string());
+    fail_in(path, "is not a regular file");
   errno = 0;
   std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in) fail("{}: cannot be opened: {}", path.string(), std::strerror(errno));
+  if (!in) fail_in(path, "cannot be opened: {}", std::strerror(errno));
   const auto size = static_cast<std::uintmax_t>(in.tellg());
-  if (size > max_bytes)
-    fail("{}: {} bytes is too large for this kind of file", path.string(), size);
+  if (size > max_bytes) fail_in(path, "{} bytes is too large for this kind of file", size);
   std::string bytes(size, '\0');
   in.seekg(0);
   in.read(bytes.data(), static_cast<std::streamsize>(size));
-  if (!in) fail("{}: cannot be read to its end", path.string());
+  if (!in) fail_in(path, "cannot be read to its end");
   return bytes;
 }
 

@@ -10,7 +10,7 @@ namespace axial {
 EventSink console_events() {
   return [stages = std::make_shared<std::map<std::string, ProgressSink>>()](const Event& event) {
     if (event.kind == Event::Kind::line) {
-      log_line(event.level, event.text);
+      log_line(event.level, event.marked);
     } else if (event.total == 0) {
       (*stages)[event.text] = console_progress(event.text);
     } else {

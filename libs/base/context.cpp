@@ -21,6 +21,7 @@ Context::Context(const Context& whole, MemoryBudget memory)
 EventSink Context::with_prefix(std::string prefix) const {
   return [this, prefix = std::move(prefix)](Event event) {
     event.text = prefix + event.text;
+    if (event.kind == Event::Kind::line) event.marked = prefix + event.marked;
     send(event);
   };
 }
@@ -40,8 +41,9 @@ void Context::check_stop() const {
 
 void Context::send(LogLevel level, fmt::string_view format, fmt::format_args arguments) const {
   if (!sink_) return;
-  std::string line = fmt::vformat(format, arguments);
-  send({Event::Kind::line, level, level == LogLevel::warning ? as_message(line) : line});
+  const std::string marked = fmt::vformat(format, arguments), line = in_words(marked);
+  send({Event::Kind::line, level, level == LogLevel::warning ? as_message(line) : line, 0, 0,
+        marked});
 }
 
 void Context::send(const Event& event) const {

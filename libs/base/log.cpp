@@ -15,6 +15,7 @@
 #include <sstream>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "base/error.h"
 #include "base/log_file.h"
@@ -57,6 +58,11 @@ std::shared_ptr<spdlog::sinks::sink>& file_sink() {
   return sink;
 }
 
+SettingNames& setting_names() {
+  static SettingNames names;
+  return names;
+}
+
 // Whether lines of a log may be appended to `file`: it begins with a date and time, is empty, does
 // not exist, or is not a regular file.
 bool may_hold_a_log(const std::filesystem::path& file) {
@@ -76,15 +82,14 @@ bool may_hold_a_log(const std::filesystem::path& file) {
 }  // namespace
 
 void log_to_file_too(const std::filesystem::path& file) {
-  if (!may_hold_a_log(file))
-    fail("{}: is not a log file, and nothing is added to it", file.string());
+  if (!may_hold_a_log(file)) fail_in(file, "is not a log file, and nothing is added to it");
   try {
     const auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file.string());
     sink->set_formatter(line_format("%Y-%m-%d %H:%M:%S"));
     spdlog::default_logger()->sinks().push_back(sink);
     file_sink() = sink;
   } catch (const spdlog::spdlog_ex& error) {
-    fail("{}: cannot be written: {}", file.string(), error.what());
+    fail_in(file, "cannot be written: {}", error.what());
   }
 }
 
@@ -115,22 +120,32 @@ void start_log(const std::string& name, const std::string& line_start) {
   log->set_formatter(line_format(line_start + "%H:%M:%S"));
   log->flush_on(spdlog::level::trace);
   spdlog::set_default_logger(log);
+  name_settings({});
+}
+
+void name_settings(SettingNames names) {
+  setting_names() = std::move(names);
+}
+
+std::string log_words(std::string_view text) {
+  return in_words(text, setting_names());
 }
 
 void log_line(LogLevel level, std::string_view line) {
+  std::string words = log_words(line);
+  if (level == LogLevel::warning) words = as_message(words);
   spdlog::default_logger_raw()->log(level_of(level),
-                                    spdlog::string_view_t(line.data(), line.size()));
+                                    spdlog::string_view_t(words.data(), words.size()));
 }
 
 void log_formatted(LogLevel level, fmt::string_view format, fmt::format_args arguments) {
-  if (!logs(level)) return;
-  const std::string line = fmt::vformat(format, arguments);
-  log_line(level, level == LogLevel::warning ? as_message(line) : line);
+  if (logs(level)) log_line(level, fmt::vformat(format, arguments));
 }
 
 struct LogCapture::State {
   std::ostringstream text;
   std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
+  SettingNames names_before = std::exchange(setting_names(), {});
 };
 
 LogCapture::LogCapture() : state_(std::make_unique<State>()) {
@@ -142,6 +157,7 @@ LogCapture::LogCapture() : state_(std::make_unique<State>()) {
 
 LogCapture::~LogCapture() {
   spdlog::set_default_logger(state_->before);
+  name_settings(state_->names_before);
 }
 
 std::string LogCapture::text() const {

@@ -26,17 +26,25 @@ bool logs(LogLevel level);
 // Starts the log. From now on lines go to standard output as "HH:MM:SS [name] text", and a warning
 // as "HH:MM:SS [name] warning: text". `line_start` is written before each line and must not contain
 // '%'. If standard output is a terminal, the caller passes the control characters that erase a line
-// of progress, otherwise "". The level becomes `info`, and lines no longer go to an earlier file of
-// log_to_file_too() (log_file.h). Call set_log_level() and log_to_file_too() after start_log().
+// of progress, otherwise "". The level becomes `info`, settings have their own names, and lines no
+// longer go to an earlier file of log_to_file_too() (log_file.h). Call the other functions after
+// start_log().
 void start_log(const std::string& name, const std::string& line_start);
 
-// Writes one line, unless `level` is below the log's level.
+// From now on, lines of the log and log_words() call settings by `names`. No other thread may use
+// the log at the same time.
+void name_settings(SettingNames names);
+
+// Returns in_words(text) with the names of name_settings().
+std::string log_words(std::string_view text);
+
+// Writes log_words(line), unless `level` is below the log's level. as_message() (base/message.h)
+// makes a warning one line of at most 500 bytes.
 void log_line(LogLevel level, std::string_view line);
 
-// Formats one line and writes it, unless `level` is below the log's level. The line is formatted
-// only if it is written. as_message() (base/message.h) makes a warning one line of at most 500
-// bytes. log_warning(), log_info() and log_details() write `format` with `args` in place of its
-// "{}" (fmt's syntax) in this way.
+// Formats one line and writes it by log_line(). The line is formatted only if it is written.
+// log_warning(), log_info() and log_details() write `format` with `args` in place of its "{}"
+// (fmt's syntax) in this way.
 void log_formatted(LogLevel level, fmt::string_view format, fmt::format_args arguments);
 
 // Writes a line of the level `warning`.
@@ -58,8 +66,8 @@ void log_details(fmt::format_string<Args...> format, Args&&... args) {
 }
 
 // For tests. While the object exists, the log collects its lines of the levels `info` and
-// `warning`, and writes no line. The destructor restores the log. Objects must be destroyed in
-// reverse order.
+// `warning`, in which settings have their own names, and writes no line. The destructor restores
+// the log. Objects must be destroyed in reverse order.
 class LogCapture {
  public:
   LogCapture();

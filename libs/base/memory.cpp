@@ -68,7 +68,7 @@ std::uint64_t container_limit(const fs::path& root) {
 
 std::uint64_t available_memory(const fs::path& root) {
   const auto available = mem_available(root);
-  if (!available) fail("{}: has no value MemAvailable", (root / "proc/meminfo").string());
+  if (!available) fail_in(root / "proc/meminfo", "has no value MemAvailable");
   return std::min(*available, container_limit(root));
 }
 

@@ -13,19 +13,18 @@ namespace axial {
 namespace {
 
 // The memory that this process uses is not available any more, but it belongs to the limit.
-std::uint64_t limit_of(std::uint64_t megabytes, const std::string& setting) {
+std::uint64_t limit_of(std::uint64_t megabytes) {
   if (megabytes > 0) return megabytes * kMegabyte;
   try {
     return available_memory() / 10 * 7 + resident_memory() / 10 * 7;
   } catch (const Error& error) {
-    fail("{}; give {}", error.what(), setting);
+    fail("{}; give {}", error.text(), setting("max_memory"));
   }
 }
 
 }  // namespace
 
 struct MemoryBudget::State {
-  std::string setting;
   std::uint64_t limit = 0, megabytes = 0, program_bytes = 0;
   bool is_program = false;
   std::atomic<std::uint64_t> reserved = 0;
@@ -53,36 +52,30 @@ MemoryBudget::Reservation::~Reservation() {
   if (state_) state_->reserved -= bytes_;
 }
 
-MemoryBudget MemoryBudget::of_program(std::uint64_t megabytes, std::string setting,
-                                      std::uint64_t program_bytes) {
-  MemoryBudget budget = of_bytes(limit_of(megabytes, setting), setting);
+MemoryBudget MemoryBudget::of_program(std::uint64_t megabytes, std::uint64_t program_bytes) {
+  MemoryBudget budget = of_bytes(limit_of(megabytes));
   budget.state_->megabytes = megabytes;
   budget.state_->program_bytes = program_bytes;
   budget.state_->is_program = true;
   return budget;
 }
 
-MemoryBudget MemoryBudget::of_bytes(std::uint64_t bytes, std::string setting) {
+MemoryBudget MemoryBudget::of_bytes(std::uint64_t bytes) {
   MemoryBudget budget;
   budget.state_ = std::make_shared<State>();
-  budget.state_->setting = std::move(setting);
   budget.state_->limit = bytes;
   budget.state_->megabytes = bytes / kMegabyte;
   return budget;
 }
 
 MemoryBudget MemoryBudget::share() const {
-  return state_ && state_->is_program ? of_bytes(left(), setting()) : *this;
+  return state_ && state_->is_program ? of_bytes(left()) : *this;
 }
 
 MemoryBudget MemoryBudget::with_advice(std::string advice) const {
   MemoryBudget copy = *this;
   copy.advice_ = std::move(advice);
   return copy;
-}
-
-const std::string& MemoryBudget::setting() const {
-  return state_->setting;
 }
 
 std::uint64_t MemoryBudget::megabytes() const {
@@ -106,10 +99,11 @@ void MemoryBudget::require(std::uint64_t bytes, const std::string& work) const {
   if (!state_) return;
   const std::uint64_t needed = state_->used() + bytes, limit = state_->limit;
   if (needed <= limit) return;
+  const std::string name = setting("max_memory");
   if (state_->is_program)
-    fail("{}: {} MB are too little, {} needs {} MB{}", setting(), limit / kMegabyte, work,
+    fail("{}: {} MB are too little, {} needs {} MB{}", name, limit / kMegabyte, work,
          needed / kMegabyte + 1, advice_);
-  fail("{}: {} needs {} MB more{}", setting(), work, (needed - limit) / kMegabyte + 1, advice_);
+  fail("{}: {} needs {} MB more{}", name, work, (needed - limit) / kMegabyte + 1, advice_);
 }
 
 std::size_t MemoryBudget::items(std::uint64_t each, std::size_t most,

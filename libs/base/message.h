@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Turns any text into one line of bounded length. fail(), log_warning() and run_program() use
+// Turns any text into one line of bounded length. Errors, warnings and run_program() use
 // as_message(), because their messages quote the contents of files.
 #pragma once
 

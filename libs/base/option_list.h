@@ -45,7 +45,7 @@ struct OptionChoice {
   std::function<void()> take;
 };
 
-// A setting of a library that an option sets. Messages call it "--<option><value>" (option_of()).
+// A setting of a library that an option sets. Messages call it "--<option><value>".
 struct OptionSetting {
   std::string name;   // a field ("mask_folder"), or a field with a value ("make_maps false")
   std::string value;  // "", or a value of the option with a space before it (" -1")
@@ -154,7 +154,7 @@ class OptionList {
   // The budget that the value of --max-memory states. Without this option, it has no limit.
   MemoryBudget memory() const {
     if (!max_memory_) return {};
-    return MemoryBudget::of_program(*max_memory_, "--max-memory", program_bytes_);
+    return MemoryBudget::of_program(*max_memory_, program_bytes_);
   }
 
   // Adds an option of OpenMVS's programs whose function AxialMVS does not have. It accepts only its

@@ -129,12 +129,11 @@ OutputLock::OutputLock(fs::path output, LockUse use, ParentFolder parent) {
     }
     ::close(opened);
     if (!is_lock(content))
-      fail("{}: is not a lock of this program, and would be overwritten: rename it",
-           file_.string());
+      fail_in(file_, "is not a lock of this program, and would be overwritten: rename it");
     if (outcome == Outcome::no_locks) return;
     if (outcome == Outcome::held_by_others)
-      fail("{}: another run writes it: {}; start again when that run has ended", output.string(),
-           holder_in(content));
+      fail_in(output, "another run writes it: {}; start again when that run has ended",
+              holder_in(content));
   }
 }
 

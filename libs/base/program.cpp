@@ -221,7 +221,7 @@ void apply(CommonOptions& common) {
     try {
       log_to_file_too(in_working_folder(common, common.log_file));
     } catch (const Error& error) {
-      fail("--log-file {}", error.what());
+      fail("--log-file {}", error.text());
     }
   }
   if (common.archive_type < -1 || common.archive_type > 3)
@@ -300,10 +300,10 @@ void read_config(const fs::path& working_folder, const po::options_description& 
       refuse_negative(in_file, config);
       po::store(in_file, values);
     } catch (const po::error& error) {
-      fail("{}: {}", cfg.string(), as_message(error.what()));
+      fail_in(cfg, "{}", as_message(error.what()));
     }
   } else if (given_in(values, "config-file")) {
-    fail("{}: cannot be opened", cfg.string());
+    fail_in(cfg, "cannot be opened");
   }
 }
 
@@ -317,7 +317,7 @@ void print_help(const ProgramOptions& program) {
 
 // The options of the settings in the tables of the program.
 SettingNames options_of_settings(const ProgramOptions& program) {
-  std::map<std::string, std::string, std::less<>> names{{"working_folder", "--working-folder"}};
+  SettingNames names{{"working_folder", "--working-folder"}};
   for (const OptionList* list : {&program.visible, &program.hidden})
     for (const Option& option : list->options()) {
       std::string field = option.long_name();
@@ -326,10 +326,7 @@ SettingNames options_of_settings(const ProgramOptions& program) {
       for (const OptionSetting& setting : option.settings)
         names[setting.name] = "--" + option.long_name() + setting.value;
     }
-  return [names = std::move(names)](std::string_view setting) {
-    const auto found = names.find(setting);
-    return found == names.end() ? std::string(setting) : found->second;
-  };
+  return names;
 }
 
 }  // namespace
@@ -383,8 +380,8 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
   } catch (const po::error& error) {
     fail("command line: {}", as_message(error.what()));
   }
+  name_settings(options_of_settings(program));
   apply(parsed.common);
-  parsed.option_of = options_of_settings(program);
   parsed.memory = program.visible.memory();
   take_values(std::array{&program.visible, &program.hidden}, parsed);
   parsed.run = true;
@@ -421,7 +418,8 @@ int run_program(const std::string& name, const std::function<int()>& body) {
     filter_errors();
     return body();
   } catch (const std::exception& error) {
-    say_error(name, is_out_of_memory(error) ? "out of memory" : as_message(error.what()));
+    say_error(name, is_out_of_memory(error) ? "out of memory"
+                                            : as_message(log_words(marked_text(error))));
   }
   return 1;
 }

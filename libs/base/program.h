@@ -47,10 +47,6 @@ struct ProgramOptions {
 struct ParsedOptions {
   CommonOptions common;
   std::set<std::string> given;  // long names of the options on the command line or in the cfg file
-  // Returns the option that sets a setting of a library ("--mask-path" for "mask_folder"), or the
-  // setting itself if no option does. A setting is a field, or a field with a value (OptionSetting
-  // in base/option_list.h).
-  SettingNames option_of = own_name;
   MemoryBudget memory = {};  // of --max-memory; without a limit if the program has no such option
   bool run = false;          // false: the program must do nothing more and exit with exit_code
   int exit_code = 0;
@@ -64,6 +60,8 @@ struct ParsedOptions {
 //     positional arguments.
 //   - The cfg file (default `<name>.cfg` in the working folder) gives values for options that are
 //     absent from the command line.
+// From now on, errors and the log call the settings of libraries by the options of the program that
+// set them: "--mask-path" for setting("mask_folder") (OptionSetting in base/option_list.h).
 // The result has `run` = false in three cases:
 //   - --version is given: prints the version. The exit code is 0.
 //   - -h is given: prints the help. The exit code is 0. (OpenMVS's programs exit with 1 if

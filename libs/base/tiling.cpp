@@ -28,23 +28,21 @@ std::optional<std::size_t> tiles_in_name(std::string_view name, const std::strin
 
 }  // namespace
 
-std::string text_of(const Tiling& tiling, const SettingNames& name_of) {
-  return tiling.tile ? fmt::format("{} {}/{}", name_of("tile"), *tiling.tile, tiling.count)
-                     : fmt::format("{} {}", name_of("tiles"), tiling.count);
+std::string text_of(const Tiling& tiling) {
+  return tiling.tile ? fmt::format("{} {}/{}", setting("tile"), *tiling.tile, tiling.count)
+                     : fmt::format("{} {}", setting("tiles"), tiling.count);
 }
 
-void check(const Tiling& tiling, const SettingNames& name_of) {
+void check(const Tiling& tiling) {
   const std::size_t tile = tiling.tile.value_or(1);
   if (tiling.count < 1 || tiling.count > kMostTiles || tile < 1 || tile > tiling.count)
-    fail("{}: must be from 1 to {}", text_of(tiling, name_of),
-         tiling.tile ? tiling.count : kMostTiles);
+    fail("{}: must be from 1 to {}", text_of(tiling), tiling.tile ? tiling.count : kMostTiles);
 }
 
 void take_tile(const std::string& value, const ParsedOptions& parsed, Tiling& tiling) {
-  const SettingNames& name_of = parsed.option_of;
-  const auto [tile, count] = parse_fraction(name_of("tile"), value, kMostTiles);
+  const auto [tile, count] = parse_fraction(setting("tile"), value, kMostTiles);
   if (given(parsed, "tiles") && tiling.count != count)
-    fail("{} {}: contradicts {}", name_of("tile"), value, text_of({tiling.count}, name_of));
+    fail("{} {}: contradicts {}", setting("tile"), value, text_of(Tiling{tiling.count}));
   tiling = {count, tile};
 }
 

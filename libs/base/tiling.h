@@ -23,12 +23,12 @@ struct Tiling {
 };
 
 // The setting and its value in messages: "tile 2/4" if the run makes one tile, otherwise "tiles 4".
-// Both settings get their names from `name_of`.
-std::string text_of(const Tiling& tiling, const SettingNames& name_of);
+// Both settings are marked (setting()).
+std::string text_of(const Tiling& tiling);
 
 // Throws an Error with text_of() unless `count` is from 1 to kMostTiles and `tile` is from 1 to
 // `count`.
-void check(const Tiling& tiling, const SettingNames& name_of);
+void check(const Tiling& tiling);
 
 // Takes the value "I/N" of --tile. `tiling.count` is the value of --tiles. Error if the value has
 // another form, if it is not a tile of at most kMostTiles tiles, or if --tiles is given and is not

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/unused_input.h"
 
-#include <utility>
-
 #include "base/error.h"
 #include "base/log.h"
 
@@ -13,15 +11,10 @@ void UnusedInput::declare(OptionList& list, bool& allowed) {
                   "continue with a warning if a given input cannot be used");
 }
 
-UnusedInput::UnusedInput(bool allowed) : UnusedInput(allowed, "--allow-missing") {}
-
-UnusedInput::UnusedInput(bool allowed, std::string setting)
-    : allowed_(allowed), setting_(std::move(setting)) {}
-
 void UnusedInput::report(const std::string& line) {
-  if (!allowed_) fail("{} ({} continues without it)", line, setting_);
+  if (!allowed_) fail("{} ({} continues without it)", line, setting("allow_missing"));
   log_warning("{}; it is not used", line);
-  lines_.push_back(line);
+  lines_.push_back(log_words(line));
 }
 
 }  // namespace axial

@@ -16,12 +16,8 @@ class UnusedInput {
   // default. `allowed` must exist until the options have been parsed.
   static void declare(OptionList& list, bool& allowed);
 
-  // The constructor for a program that has the option --allow-missing. `allowed`: its value.
-  explicit UnusedInput(bool allowed);
-
-  // The constructor for a library. `setting`: the words by which an error calls the setting that
-  // allows unused input.
-  UnusedInput(bool allowed, std::string setting);
+  // `allowed`: the value of the setting "allow_missing".
+  explicit UnusedInput(bool allowed) : allowed_(allowed) {}
 
   // Reports one unused input. `line` names the setting, the input and the reason. If unused input
   // is allowed, logs a warning that begins with `line`, and keeps `line` for lines(). Otherwise
@@ -29,12 +25,11 @@ class UnusedInput {
   // input.
   void report(const std::string& line);
 
-  // The lines that were reported as warnings, in the order of the reports.
+  // The lines that were reported as warnings, as the log has them, in the order of the reports.
   const std::vector<std::string>& lines() const { return lines_; }
 
  private:
   bool allowed_;
-  std::string setting_;
   std::vector<std::string> lines_;
 };
 

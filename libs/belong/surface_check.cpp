@@ -146,7 +146,7 @@ std::string known_misfit(SurfaceMeasure& measure, const Shape& shape, double lar
 
 void report_misfit(const SurfaceCheck& check, bool is_certain, const std::string& text,
                    const Context& context) {
-  if (is_certain && !check.only_warn) fail("{}: {}", check.shape.string(), text);
+  if (is_certain && !check.only_warn) fail_in(check.shape, "{}", text);
   context.warning("{}: {}", check.shape.string(), text);
 }
 

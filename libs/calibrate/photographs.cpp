@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 void check_size(const fs::path& photograph, cv::Size size, const io::ColmapCamera& lens) {
   if (static_cast<std::uint64_t>(size.width) != lens.width ||
       static_cast<std::uint64_t>(size.height) != lens.height)
-    fail("{}: is {} x {} pixels, but the lens is calibrated for {} x {}", photograph.string(),
-         size.width, size.height, lens.width, lens.height);
+    fail_in(photograph, "is {} x {} pixels, but the lens is calibrated for {} x {}", size.width,
+            size.height, lens.width, lens.height);
 }
 
 // Transparent pixels become black, so that no corners are found there.
@@ -45,7 +45,7 @@ void for_each_photograph(std::span<const fs::path> photographs, const Body& body
 std::vector<fs::path> photographs_in(std::span<const fs::path> input) {
   std::vector<fs::path> photographs;
   for (const fs::path& path : input) {
-    if (!fs::exists(path)) fail("{}: does not exist", path.string());
+    if (!fs::exists(path)) fail_in(path, "does not exist");
     if (fs::is_directory(path))
       std::ranges::copy(io::photographs_in_folder(path, false), std::back_inserter(photographs));
     else
@@ -55,14 +55,13 @@ std::vector<fs::path> photographs_in(std::span<const fs::path> input) {
 }
 
 std::vector<View> find_views(std::span<const fs::path> photographs, const Board& board,
-                             const io::ColmapCamera& lens, int bit_depth,
-                             const std::string& bit_depth_name) {
+                             const io::ColmapCamera& lens, int bit_depth) {
   std::vector<io::ImageHeader> headers(photographs.size());
   for_each_photograph(photographs, [&](std::size_t i) {
     headers[i] = io::read_image_header(photographs[i]);
     check_size(photographs[i], headers[i].size, lens);
   });
-  const int bits = io::common_bit_depth(photographs, headers, bit_depth, bit_depth_name);
+  const int bits = io::common_bit_depth(photographs, headers, bit_depth);
   std::vector<View> views(photographs.size());
   for_each_photograph(photographs, [&](std::size_t i) {
     views[i] =

@@ -62,7 +62,7 @@ void estimate_colors(PointCloud& cloud, const Scene& scene,
     const std::vector<std::size_t>& points = points_of[i];
     if (points.empty()) continue;
     const cv::Mat3b image = load_color(i);
-    if (image.empty()) fail("{}: the image is empty", scene.images[i].path);
+    if (image.empty()) fail_in(scene.images[i].path, "the image is empty");
     const Pose& pose = scene.images[i].pose;
     std::visit(
         [&](const auto& camera) {

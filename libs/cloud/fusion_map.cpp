@@ -14,16 +14,16 @@ namespace {
 void check(const DepthMap& map, const cv::Mat3b& color) {
   const cv::Size size = map.depth.size();
   const auto agrees = [&](const cv::Mat& image) { return image.empty() || image.size() == size; };
-  if (size.empty()) fail("{}: the depth map is empty", map.image_path);
+  if (size.empty()) fail_in(map.image_path, "the depth map is empty");
   if (map.camera.width != size.width || map.camera.height != size.height) {
-    fail("{}: the depth map is {}x{}, but its camera is {}x{}", map.image_path, size.width,
-         size.height, map.camera.width, map.camera.height);
+    fail_in(map.image_path, "the depth map is {}x{}, but its camera is {}x{}", size.width,
+            size.height, map.camera.width, map.camera.height);
   }
-  if (!agrees(map.normal)) fail("{}: normals and depths differ in size", map.image_path);
-  if (!agrees(map.confidence)) fail("{}: confidence and depths differ in size", map.image_path);
+  if (!agrees(map.normal)) fail_in(map.image_path, "normals and depths differ in size");
+  if (!agrees(map.confidence)) fail_in(map.image_path, "confidence and depths differ in size");
   if (!agrees(color)) {
-    fail("{}: the image is {}x{}, but the depth map is {}x{}", map.image_path, color.cols,
-         color.rows, size.width, size.height);
+    fail_in(map.image_path, "the image is {}x{}, but the depth map is {}x{}", color.cols,
+            color.rows, size.width, size.height);
   }
 }
 

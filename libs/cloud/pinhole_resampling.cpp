@@ -133,8 +133,8 @@ PinholeImage resampled(const cv::Mat3b& photograph, const cv::Mat1b& opaque,
 
 DepthMap resampled(const DepthMap& map, const PinholeView& view, const cv::Mat1f& surface) {
   if (surface.size() != cv::Size(view.camera.width, view.camera.height))
-    fail("{}: the surface is {}x{}, but its camera is {}x{}", map.image_path, surface.cols,
-         surface.rows, view.camera.width, view.camera.height);
+    fail_in(map.image_path, "the surface is {}x{}, but its camera is {}x{}", surface.cols,
+            surface.rows, view.camera.width, view.camera.height);
   DepthMap result;
   result.image_path = map.image_path;
   result.ids = map.ids;

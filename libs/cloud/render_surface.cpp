@@ -93,8 +93,8 @@ void fill_row(const Camera& camera, const DepthMap& map, const PinholeView& view
 
 cv::Mat1f render_surface(const DepthMap& map, const PinholeView& view) {
   if (map.depth.size() != cv::Size(map.camera.width, map.camera.height))
-    fail("{}: the depth map is {}x{}, but its camera is {}x{}", map.image_path, map.width(),
-         map.height(), map.camera.width, map.camera.height);
+    fail_in(map.image_path, "the depth map is {}x{}, but its camera is {}x{}", map.width(),
+            map.height(), map.camera.width, map.camera.height);
   cv::Mat1f inverse(view.camera.height, view.camera.width, 0.0f);
   std::vector<Vertex> above(static_cast<std::size_t>(map.width())), row = above;
   std::visit(

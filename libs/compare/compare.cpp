@@ -58,7 +58,7 @@ constexpr double kMostOfSurvey = 2e9;
 
 // The pixels that both grids have. Both have corners at multiples of the same pixel width. Errors
 // of map::require_possible() are passed on.
-map::MapGrid common_grid(const map::MapGrid& a, const map::MapGrid& b, SettingNames name_of) {
+map::MapGrid common_grid(const map::MapGrid& a, const map::MapGrid& b) {
   const double pixel = a.pixel;
   const double left = std::max(a.left, b.left), top = std::min(a.top, b.top);
   const double right = std::min(a.left + a.columns * pixel, b.left + b.columns * pixel);
@@ -66,7 +66,7 @@ map::MapGrid common_grid(const map::MapGrid& a, const map::MapGrid& b, SettingNa
   const double columns = std::round((right - left) / pixel),
                rows = std::round((top - bottom) / pixel);
   if (!(columns >= 1 && rows >= 1)) fail("the surveys do not overlap");
-  map::require_possible(columns, rows, pixel, name_of);
+  map::require_possible(columns, rows, pixel);
   return {left, top, pixel, static_cast<int>(columns), static_cast<int>(rows)};
 }
 
@@ -166,7 +166,7 @@ void require_seen_places(const cv::Mat1f& difference, const cv::Mat1b& unseen,
   fail(
       "{} {}: no place of both surveys is seen by so many photographs; are the scenes those of "
       "the meshes?",
-      options.name_of("min_views"), options.photos.least);
+      setting("min_views"), options.photos.least);
 }
 
 // Whether the heights show the same place, where photographs see it.
@@ -179,11 +179,11 @@ PlaceAgreement place_of(const cv::Mat1f& before, const cv::Mat1f& after, const c
 
 void require_same_place(const PlaceAgreement& place, const CompareOptions& options) {
   if (place.verdict == PlaceVerdict::different && !options.allow_other_place)
-    fail(
-        "{}: does not show the place of {}: the correlation of their reliefs is {:.2f} (by chance "
-        "{:.2f}), and that of one place {:.2f} or more; {} compares them all the same",
-        options.name_after.string(), options.name_before.string(), place.correlation, place.chance,
-        place.least, options.name_of("allow_other_place"));
+    fail_in(options.name_after,
+            "does not show the place of {}: the correlation of their reliefs is {:.2f} (by chance "
+            "{:.2f}), and that of one place {:.2f} or more; {} compares them all the same",
+            options.name_before.string(), place.correlation, place.chance, place.least,
+            setting("allow_other_place"));
 }
 
 // Estimates the noise, or takes the given one.
@@ -251,14 +251,11 @@ Comparison placed(const Mesh& before, const Mesh& after, const map::MapFrame& fr
       least_pixels(options.changes.least_pixels, std::max(distance_before, distance_after), pixel);
   result.frame = frame;
   result.base = frame.origin.z();
-  const map::MapGrid of_before = naming(options.name_before, [&] {
-    return map::grid_around(before, frame, pixel, options.name_of, kMostOfSurvey);
-  });
+  const map::MapGrid of_before = naming(
+      options.name_before, [&] { return map::grid_around(before, frame, pixel, kMostOfSurvey); });
   const auto common = [&](const map::MapFrame& of_after) {
     return naming(options.name_after, [&] {
-      return common_grid(of_before,
-                         map::grid_around(after, of_after, pixel, options.name_of, kMostOfSurvey),
-                         options.name_of);
+      return common_grid(of_before, map::grid_around(after, of_after, pixel, kMostOfSurvey));
     });
   };
   result.grid = common(frame);
@@ -304,7 +301,7 @@ Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::Map
   result.place = place_of(result.before, result.difference, unseen);
   Maps maps = subtract(result);
   if (std::ranges::all_of(result.difference, [](float value) { return std::isnan(value); }))
-    fail("{}: the surveys do not overlap", options.name_after.string());
+    fail_in(options.name_after, "the surveys do not overlap");
   require_seen_places(result.difference, unseen, options);
   require_same_place(result.place, options);
   result.noise = noise_of(result.difference, unseen, maps.steepness, options, result.grid.pixel);

@@ -43,7 +43,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
 
 double number_of(std::string_view word, const char* field, const std::string& where) {
   const auto number = parse_number<double>(word);
-  if (!number) fail("{}: {} is '{}', which is not a number", where, field, word);
+  if (!number) fail_in(where, "{} is '{}', which is not a number", field, word);
   return *number;
 }
 
@@ -76,7 +76,7 @@ class Points {
 
 TargetImage observation(std::span<const std::string_view> words, Points& points,
                         const std::string& where) {
-  if (words.size() < 6) fail("{}: must be X Y Z IM_X IM_Y IMAGE [NAME]", where);
+  if (words.size() < 6) fail_in(where, "must be X Y Z IM_X IM_Y IMAGE [NAME]");
   const double x = finite(number_of(words[0], "geo_x", where), where, "geo_x");
   const double y = finite(number_of(words[1], "geo_y", where), where, "geo_y");
   const double z = number_of(words[2], "geo_z", where);
@@ -86,7 +86,7 @@ TargetImage observation(std::span<const std::string_view> words, Points& points,
                  finite(number_of(words[4], "im_y", where), where, "im_y")};
   image.image = words[5];
   image.where = where;
-  if (image.image.empty()) fail("{}: the name of the photograph is empty", where);
+  if (image.image.empty()) fail_in(where, "the name of the photograph is empty");
   image.label = points.add({x, y, z}, words.size() > 6 ? words[6] : std::string_view(), where);
   return image;
 }

@@ -75,7 +75,7 @@ template <class Use>
 void for_each_entry(const json& file, const std::string& name, const char* key, Use use) {
   const auto found = file.find(key);
   if (found == file.end()) return;
-  if (!found->is_array()) fail("{}: {} must be a list", name, key);
+  if (!found->is_array()) fail_in(name, "{} must be a list", key);
   for (std::size_t i = 0; i < found->size(); ++i) {
     const Entry entry{(*found)[i], fmt::format("{}: {}[{}]", name, key, i)};
     if (!entry.object.is_object()) fail("{} must be an object", entry.where);
@@ -169,7 +169,7 @@ void note_degrees(const Entry& entry, std::optional<bool>& degrees) {
   const bool metres = entry.has("x") || entry.has("y");
   if (!here && !metres) return;
   if (here == metres || degrees.value_or(here) != here)
-    fail("{}: x and y are beside longitude and latitude; a file has one of both", entry.where);
+    fail_in(entry.where, "x and y are beside longitude and latitude; a file has one of both");
   degrees = here;
 }
 
@@ -180,7 +180,7 @@ Control read_json_control(const std::string& text, const std::filesystem::path& 
   const std::string name = file.string();
   const json content = io::parse_json(text, name);
   if (!content.contains("targets") && !content.contains("points") && !content.contains("bars"))
-    fail("{}: has no targets, no points and no bars", name);
+    fail_in(name, "has no targets, no points and no bars");
   Control control;
   for_each_entry(content, name, "targets",
                  [&](const Entry& entry) { control.images.push_back(image_of(entry)); });

@@ -25,8 +25,8 @@ class Document {
   Document(const std::string& text, std::string file) : text_(text), file_(std::move(file)) {
     const auto result = xml_.load_buffer(text.data(), text.size());
     if (!result)
-      fail("{}: is no XML: {}", where(std::max<std::ptrdiff_t>(0, result.offset)),
-           result.description());
+      fail_in(where(std::max<std::ptrdiff_t>(0, result.offset)), "is no XML: {}",
+              result.description());
   }
   pugi::xml_node root() const { return xml_.document_element(); }
   std::string where(std::ptrdiff_t offset) const {
@@ -47,7 +47,7 @@ double number_of(const pugi::xml_node& node, const char* name, double otherwise,
   const char* text = node.attribute(name).value();
   if (!*text) return otherwise;
   const auto number = parse_number<double>(text);
-  if (!number) fail("{}: {} is '{}', which is not a number", where, name, text);
+  if (!number) fail_in(where, "{} is '{}', which is not a number", name, text);
   return *number;
 }
 
@@ -81,10 +81,10 @@ Labels labels_of(const std::vector<pugi::xml_node>& nodes, const Document& docum
   Labels labels;
   for (const pugi::xml_node& node : nodes) {
     const std::string label = node.attribute("label").value();
-    if (label.empty()) fail("{}: a {} has no label", document.where(node), node.name());
+    if (label.empty()) fail_in(document.where(node), "a {} has no label", node.name());
     if (!labels.emplace(node.attribute("id").value(), label).second)
-      fail("{}: {}: its id {} occurs twice", document.where(node), label,
-           node.attribute("id").value());
+      fail_in(document.where(node), "{}: its id {} occurs twice", label,
+              node.attribute("id").value());
   }
   return labels;
 }
@@ -93,8 +93,8 @@ const std::string& label_of(const Labels& labels, const pugi::xml_node& node, co
                             const Document& document) {
   const auto found = labels.find(node.attribute(name).value());
   if (found == labels.end())
-    fail("{}: {} is '{}', but nothing in the file has this id", document.where(node), name,
-         node.attribute(name).value());
+    fail_in(document.where(node), "{} is '{}', but nothing in the file has this id", name,
+            node.attribute(name).value());
   return found->second;
 }
 

@@ -18,7 +18,7 @@ Control read_any(const std::filesystem::path& file, const ControlReading& option
   std::string text = io::read_table_text(file);
   text.erase(0, text.size() - without_byte_order_mark(text).size());
   const std::string_view content = trimmed(text);
-  if (content.empty()) fail("{}: is empty", file.string());
+  if (content.empty()) fail_in(file, "is empty");
   if (content.starts_with('{')) return read_json_control(text, file, options);
   if (content.starts_with('<')) return read_markers_xml(text, file, options);
   if (is_gcp_list(text)) return read_gcp_list(text, file, options);
@@ -39,7 +39,7 @@ std::string contents_of(const Control& control) {
 
 void require_role(const Control& control, Role role, const std::filesystem::path& file) {
   const auto require = [&](bool there, const char* what) {
-    if (!there) fail("{}: has no {}{}", file.string(), what, contents_of(control));
+    if (!there) fail_in(file, "has no {}{}", what, contents_of(control));
   };
   if (role == Role::images) require(!control.images.empty(), "targets in photographs");
   if (role == Role::points) require(!control.points.empty(), "control points");
@@ -74,7 +74,7 @@ void append_new(std::vector<Item>& items, const std::vector<Item>& more) {
     if (known == items.end())
       items.push_back(item);
     else if (!same_numbers(item, *known))
-      fail("{}: {} has other numbers than at {}", item.where, name_of(item), known->where);
+      fail_in(item.where, "{} has other numbers than at {}", name_of(item), known->where);
   }
 }
 
@@ -82,8 +82,9 @@ void append_new(std::vector<Item>& items, const std::vector<Item>& more) {
 
 void append(Control& control, Control more) {
   if (!control.points.empty() && !more.points.empty() && control.crs != more.crs)
-    fail("{}: the points are in the system '{}', but those of {} are in '{}'",
-         more.points.front().where, more.crs, control.points.front().where, control.crs);
+    fail_in(more.points.front().where,
+            "the points are in the system '{}', but those of {} are in '{}'", more.crs,
+            control.points.front().where, control.crs);
   if (!more.points.empty()) control.crs = more.crs;
   append_new(control.points, more.points);
   append_new(control.bars, more.bars);

@@ -26,17 +26,17 @@ bool same_place(const StatedPoint& a, const StatedPoint& b) {
 }
 
 void check_point(const StatedPoint& point) {
-  if (label_key(point.label).empty()) fail("{}: the label is empty", point.where);
+  if (label_key(point.label).empty()) fail_in(point.where, "the label is empty");
   for (int k = 0; k < 3; ++k) {
     if (std::isinf(point.place[k]))
-      fail("{}: {}: a coordinate is {}, which is not finite", point.where, point.label,
-           point.place[k]);
+      fail_in(point.where, "{}: a coordinate is {}, which is not finite", point.label,
+              point.place[k]);
     if (!(point.sigma[k] >= 0) || std::isinf(point.sigma[k]))
-      fail("{}: {}: an accuracy is {}, but must be above 0", point.where, point.label,
-           point.sigma[k]);
+      fail_in(point.where, "{}: an accuracy is {}, but must be above 0", point.label,
+              point.sigma[k]);
   }
   if (std::isnan(point.place.x()) != std::isnan(point.place.y()))
-    fail("{}: {}: has only one of the two horizontal coordinates", point.where, point.label);
+    fail_in(point.where, "{}: has only one of the two horizontal coordinates", point.label);
 }
 
 // Leaves one point of each label.
@@ -46,8 +46,8 @@ void remove_repetitions(std::vector<StatedPoint>& points) {
     check_point(point);
     const auto [known, is_new] = first.emplace(label_key(point.label), point);
     if (!is_new && !same_place(known->second, point))
-      fail("{}: {} has another place or accuracy than at {}", point.where, point.label,
-           known->second.where);
+      fail_in(point.where, "{} has another place or accuracy than at {}", point.label,
+              known->second.where);
     return !is_new;
   });
 }
@@ -61,8 +61,8 @@ void turn_depths(StatedPoints& stated, const std::string& file, Control& control
     if (point.place.z() < 0 && !above) above = &point;
   }
   if (below && above)
-    fail("{}: {}: the depth is {}, but that of {} is {}; depths must have one sign", below->where,
-         below->label, below->place.z(), above->label, above->place.z());
+    fail_in(below->where, "{}: the depth is {}, but that of {} is {}; depths must have one sign",
+            below->label, below->place.z(), above->label, above->place.z());
   if (below)
     for (StatedPoint& point : stated.points)
       if (point.is_depth) point.place.z() = 0 - point.place.z();
@@ -75,7 +75,7 @@ void turn_depths(StatedPoints& stated, const std::string& file, Control& control
 
 CoordinateSystem system_of(const std::string& text, const std::string& where) {
   auto system = CoordinateSystem::from_text(text);
-  if (!system) fail("{}: '{}' is no coordinate reference system that PROJ knows", where, text);
+  if (!system) fail_in(where, "'{}' is no coordinate reference system that PROJ knows", text);
   return *std::move(system);
 }
 
@@ -86,10 +86,10 @@ std::optional<CoordinateSystem> stated_system(const StatedPoints& stated) {
   }
   auto system = system_of(stated.crs, stated.crs_where);
   if (stated.degrees && !system.is_geographic())
-    fail("{}: the coordinates are longitude and latitude, but the system is {}", stated.crs_where,
-         system.is_local() ? "local" : system.name());
+    fail_in(stated.crs_where, "the coordinates are longitude and latitude, but the system is {}",
+            system.is_local() ? "local" : system.name());
   if (system.is_local() && !system.is_metric())
-    fail("{}: the unit of the coordinates is not the metre", stated.crs_where);
+    fail_in(stated.crs_where, "the unit of the coordinates is not the metre");
   return system;
 }
 
@@ -113,8 +113,8 @@ void require_on_earth(const StatedPoints& stated) {
   for (const StatedPoint& point : stated.points)
     if (has_plane(point) &&
         (std::abs(point.place.x()) > kMostLongitude || std::abs(point.place.y()) > kPole))
-      fail("{}: {}: longitude {} and latitude {} are not on the Earth", point.where, point.label,
-           point.place.x(), point.place.y());
+      fail_in(point.where, "{}: longitude {} and latitude {} are not on the Earth", point.label,
+              point.place.x(), point.place.y());
 }
 
 void transform(StatedPoints& stated, const CoordinateSystem& from, const CoordinateSystem& to) {
@@ -126,8 +126,8 @@ void transform(StatedPoints& stated, const CoordinateSystem& from, const Coordin
   for (StatedPoint& point : stated.points) {
     if (!has_plane(point)) continue;
     if (!there[next].allFinite())
-      fail("{}: {}: {} {} has no place in {}", point.where, point.label, point.place.x(),
-           point.place.y(), to.name());
+      fail_in(point.where, "{}: {} {} has no place in {}", point.label, point.place.x(),
+              point.place.y(), to.name());
     point.place.head<2>() = there[next++];
   }
 }
@@ -135,7 +135,7 @@ void transform(StatedPoints& stated, const CoordinateSystem& from, const Coordin
 CoordinateSystem system_of_epsg(int epsg, const std::string& file) {
   auto system = system_of(fmt::format("EPSG:{}", epsg), file);
   if (!system.is_metric() || system.is_local())
-    fail("{}: EPSG:{} is no projected coordinate reference system with metres as unit", file, epsg);
+    fail_in(file, "EPSG:{} is no projected coordinate reference system with metres as unit", epsg);
   return system;
 }
 
@@ -156,8 +156,8 @@ std::string to_metres(StatedPoints& stated, const std::string& file, int epsg, C
   }
   if (!to) {
     if (!from->is_geographic() && !from->is_metric())
-      fail("{}: the unit of {} is not the metre; give the code of a system in metres",
-           stated.crs_where, from->name());
+      fail_in(stated.crs_where,
+              "the unit of {} is not the metre; give the code of a system in metres", from->name());
     return from->is_geographic() ? "" : from->name();
   }
   if (to->name() == from->name()) return to->name();
@@ -190,7 +190,7 @@ bool lacks_sigma(const StatedPoint& point) {
 }  // namespace
 
 double finite(double value, const std::string& where, const std::string& field) {
-  if (!std::isfinite(value)) fail("{}: {} is {}, which is not finite", where, field, value);
+  if (!std::isfinite(value)) fail_in(where, "{} is {}, which is not finite", field, value);
   return value;
 }
 
@@ -209,18 +209,18 @@ void add_points(StatedPoints stated, const std::filesystem::path& file,
 
 void add_bar(Bar bar, const ControlReading& options, Control& control) {
   if (label_key(bar.first).empty() || label_key(bar.second).empty())
-    fail("{}: the label of a target is empty", bar.where);
+    fail_in(bar.where, "the label of a target is empty");
   const std::string name = name_of(bar);
-  if (same_label(bar.first, bar.second)) fail("{}: {}: both targets are the same", bar.where, name);
+  if (same_label(bar.first, bar.second)) fail_in(bar.where, "{}: both targets are the same", name);
   if (!(bar.metres > 0) || std::isinf(bar.metres))
-    fail("{}: {}: the length {} m must be above 0", bar.where, name, bar.metres);
+    fail_in(bar.where, "{}: the length {} m must be above 0", name, bar.metres);
   if (!(bar.sigma >= 0) || std::isinf(bar.sigma))
-    fail("{}: {}: the accuracy {} m must be above 0", bar.where, name, bar.sigma);
+    fail_in(bar.where, "{}: the accuracy {} m must be above 0", name, bar.sigma);
   if (bar.sigma == 0) bar.sigma = options.bar_sigma;
   for (const Bar& other : control.bars) {
     if (!same_targets(bar, other)) continue;
     if (other.metres == bar.metres && other.sigma == bar.sigma) return;
-    fail("{}: {} has another length or accuracy than at {}", bar.where, name, other.where);
+    fail_in(bar.where, "{} has another length or accuracy than at {}", name, other.where);
   }
   control.bars.push_back(std::move(bar));
 }

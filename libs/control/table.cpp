@@ -64,7 +64,7 @@ Table table_of(const std::string& text, const std::string& file) {
 
 Fields fields_of(const Line& line, char delimiter) {
   auto fields = io::split_fields(line.text, delimiter);
-  if (!fields) fail("{}: a quote is not closed", line.where);
+  if (!fields) fail_in(line.where, "a quote is not closed");
   return *std::move(fields);
 }
 
@@ -81,16 +81,16 @@ std::optional<Header> header_in(const Line& line) {
 void require_columns(const Header& header, const std::string& where) {
   for (const auto& [meaning, name] :
        {std::pair{Meaning::x, "x, easting or longitude"}, {Meaning::y, "y, northing or latitude"}})
-    if (!header.has(meaning)) fail("{}: the header has no column {}", where, name);
+    if (!header.has(meaning)) fail_in(where, "the header has no column {}", name);
   if (!header.has(Meaning::z) && !header.has(Meaning::depth))
-    fail("{}: the header has no column z, altitude or depth", where);
+    fail_in(where, "the header has no column z, altitude or depth");
 }
 
 // An empty field is no number: NaN.
 double number_or_none(const std::string& field, const std::string& where) {
   if (field.empty()) return kNoNumber;
   const auto number = io::number_in(field);
-  if (!number) fail("{}: '{}' is not a number", where, field);
+  if (!number) fail_in(where, "'{}' is not a number", field);
   return *number;
 }
 
@@ -103,7 +103,7 @@ bool flag_in(const std::string& field, const std::string& where) {
   const std::string word = lower_case(field);
   if (word.empty() || word == "0" || word == "false" || word == "no") return false;
   if (word == "1" || word == "true" || word == "yes" || word == "check") return true;
-  fail("{}: '{}' is neither true nor false", where, field);
+  fail_in(where, "'{}' is neither true nor false", field);
 }
 
 void take_field(const std::string& field, Meaning meaning, StatedPoint& point) {
@@ -156,8 +156,8 @@ StatedPoint point_in(const Line& line, const Header& header) {
   Fields fields = fields_of(line, header.delimiter);
   while (fields.size() > header.columns.size() && fields.back().empty()) fields.pop_back();
   if (fields.size() > header.columns.size())
-    fail("{}: has {} fields, but the header names {} columns", line.where, fields.size(),
-         header.columns.size());
+    fail_in(line.where, "has {} fields, but the header names {} columns", fields.size(),
+            header.columns.size());
   StatedPoint point;
   point.where = line.where;
   const auto label = std::ranges::find(header.columns, Meaning::label) - header.columns.begin();
@@ -196,7 +196,7 @@ bool is_bar(const Fields& fields) {
 Bar bar_in(const Line& line) {
   const char delimiter = delimiter_of(line.text);
   const Fields fields = fields_of(line, delimiter);
-  if (!is_bar(fields)) fail("{}: must be TARGET,TARGET,LENGTH[,ACCURACY[,check]]", line.where);
+  if (!is_bar(fields)) fail_in(line.where, "must be TARGET,TARGET,LENGTH[,ACCURACY[,check]]");
   Bar bar{full_label(fields[0]),
           full_label(fields[1]),
           *io::number_in(fields[2]),
@@ -233,13 +233,13 @@ Control read_table(const std::string& text, const std::filesystem::path& file,
       require_columns(*header, table.names->where);
       return read_points(table, *header, file, options);
     }
-  if (table.lines.empty()) fail("{}: has no points and no bars", file.string());
+  if (table.lines.empty()) fail_in(file, "has no points and no bars");
   const Line first = table.lines.front();
   const auto header = header_in(first);
   const bool is_points = header && !names_length(first);
   if (!is_points && (options.role != Role::points)) return read_bars(table, options);
   if (!is_points)
-    fail("{}: must be a header that names the columns, such as label,x,y,z,accuracy", first.where);
+    fail_in(first.where, "must be a header that names the columns, such as label,x,y,z,accuracy");
   require_columns(*header, first.where);
   table.lines.erase(table.lines.begin());
   return read_points(table, *header, file, options);

@@ -77,8 +77,8 @@ Header header_of(const std::vector<std::string>& names, char delimiter, const st
     const bool is_place = meaning == Meaning::x || meaning == Meaning::y || meaning == Meaning::z ||
                           meaning == Meaning::depth;
     if (is_place && !io::is_known_unit(name.unit))
-      fail("{}: column '{}' is in '{}', but must be in metres or degrees", where, name.words,
-           name.unit);
+      fail_in(where, "column '{}' is in '{}', but must be in metres or degrees", name.words,
+              name.unit);
     header.degrees |= is_place && io::means_degrees(name);
     header.may_be_degrees |= is_place && io::names_degrees(name.words);
     header.columns.push_back(meaning);

@@ -57,7 +57,7 @@ json json_of(const TargetImage& image) {
 // A field of a table: in quotes if it needs them.
 std::string field_of(const std::string& text, const fs::path& file) {
   if (text.find_first_of("\r\n") != std::string::npos || text.find('\0') != std::string::npos)
-    fail("{}: cannot be written: the label '{}' has several lines", file.string(), text);
+    fail_in(file, "cannot be written: the label '{}' has several lines", text);
   const bool plain = text.find_first_of(",;\t\"#") == std::string::npos && trimmed(text) == text;
   if (plain) return text;
   std::string quoted = "\"";
@@ -75,11 +75,11 @@ std::string sigma_or_empty(const ControlPoint& point, int coordinate) {
 
 CoordinateSystem system_of(const Control& control, const fs::path& file) {
   if (control.crs.empty())
-    fail("{}: cannot be written: the points have no coordinate reference system", file.string());
+    fail_in(file, "cannot be written: the points have no coordinate reference system");
   auto system = CoordinateSystem::from_text(control.crs);
   if (!system)
-    fail("{}: cannot be written: '{}' is no coordinate reference system that PROJ knows",
-         file.string(), control.crs);
+    fail_in(file, "cannot be written: '{}' is no coordinate reference system that PROJ knows",
+            control.crs);
   return *std::move(system);
 }
 
@@ -91,7 +91,7 @@ std::string underscored(std::string text) {
 void require_one_word(const std::string& text, const char* what, const fs::path& file) {
   if (text.empty() || text.find_first_of(kBlanks) != std::string::npos ||
       text.find('\0') != std::string::npos)
-    fail("{}: cannot be written: {} '{}' must be one word", file.string(), what, text);
+    fail_in(file, "cannot be written: {} '{}' must be one word", what, text);
 }
 
 // Longitude and latitude of the points whose place is known, in their order.
@@ -104,8 +104,8 @@ std::vector<Eigen::Vector2d> degrees_of(const Control& control, const fs::path& 
       transformed(places, system_of(control, file), *CoordinateSystem::from_text("EPSG:4326"));
   for (std::size_t i = 0; i < degrees.size(); ++i)
     if (!degrees[i].allFinite())
-      fail("{}: cannot be written: {} {} has no longitude and latitude", file.string(),
-           places[i].x(), places[i].y());
+      fail_in(file, "cannot be written: {} {} has no longitude and latitude", places[i].x(),
+              places[i].y());
   return degrees;
 }
 
@@ -141,7 +141,7 @@ void write_gcp_list(const fs::path& file, const Control& control) {
                          image.pixel.x(), image.pixel.y(), image.image, label);
   }
   if (lines.empty())
-    fail("{}: cannot be written: no target in a photograph is a control point", file.string());
+    fail_in(file, "cannot be written: no target in a photograph is a control point");
   const std::string name = system_of(control, file).name();
   require_one_word(name, "the coordinate reference system", file);
   write_atomically(file, name + "\n" + lines);
@@ -177,8 +177,8 @@ void write_reefshape_control(const fs::path& file, const Control& control) {
   std::size_t next = 0;
   for (const ControlPoint& point : control.points) {
     if (point.knows(2) && point.metres.z() > 0)
-      fail("{}: cannot be written: {} lies {} m above the surface", file.string(), point.label,
-           point.metres.z());
+      fail_in(file, "cannot be written: {} lies {} m above the surface", point.label,
+              point.metres.z());
     std::string place = ",", sigma;
     if (point.knows(0) && point.knows(1)) {
       place = fmt::format("{},{}", degrees[next].y(), degrees[next].x());

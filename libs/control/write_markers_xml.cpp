@@ -45,8 +45,7 @@ Identifiers markers_of(const Control& control) {
 void set(pugi::xml_node& node, const char* name, const std::string& value, const fs::path& file) {
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' '; };
   if (std::ranges::any_of(value, is_control))
-    fail("{}: cannot be written: '{}' contains a character that XML cannot hold", file.string(),
-         value);
+    fail_in(file, "cannot be written: '{}' contains a character that XML cannot hold", value);
   node.append_attribute(name) = value.c_str();
 }
 
@@ -128,8 +127,8 @@ std::string wkt_of(const Control& control, const fs::path& file) {
   if (control.crs.empty()) return R"x(LOCAL_CS["Local Coordinates (m)",UNIT["metre",1]])x";
   const auto system = CoordinateSystem::from_text(control.crs);
   if (!system)
-    fail("{}: cannot be written: '{}' is no coordinate reference system that PROJ knows",
-         file.string(), control.crs);
+    fail_in(file, "cannot be written: '{}' is no coordinate reference system that PROJ knows",
+            control.crs);
   return system->wkt();
 }
 

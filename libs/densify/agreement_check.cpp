@@ -65,7 +65,7 @@ std::string likely_causes(const Project& project) {
   return project.housing
              ? "the port (its distances, normal or indices), the lens, or poses and points that "
                "are not in metres"
-             : "a missing " + project.name_of("housing") + ", the lens, or the poses";
+             : "a missing " + setting("housing") + ", the lens, or the poses";
 }
 
 void say(const Project& project, const Agreement& found, const Context& context) {

@@ -43,7 +43,7 @@ struct PointExport {
   // The output path with `suffix`. Error if it is a file that was read.
   fs::path file(const std::string& suffix) const {
     const fs::path path = fs::path(output.scene).replace_extension() += suffix;
-    require_not_an_input(path, inputs, project.name_of("output"));
+    require_not_an_input(path, inputs, setting("output"));
     return path;
   }
 };
@@ -133,7 +133,7 @@ void keep_points(Scene& scene, const std::function<bool(std::size_t point)>& kep
 
 WrittenCloud export_cloud(Project project, const ExportJob& job, const OutputOptions& output,
                           const std::vector<fs::path>& inputs, const Context& context) {
-  if (project.scene.points.empty()) fail("{}: has no points to export", project.file().string());
+  if (project.scene.points.empty()) fail_in(project.file(), "has no points to export");
   const PointExport to{project, job, output, inputs, context};
   if (job.filter_point_cloud < 0) return export_filtered(to);
   if (job.export_number_views != 0) return export_number_of_views(to);

@@ -193,7 +193,7 @@ struct JobRun {
       context.warning(
           "The cloud is empty: no point was seen by {} views (see {}), or masks and the region of "
           "interest exclude all points",
-          options.fusion.min_views, options.name_of("fusion.min_views"));
+          options.fusion.min_views, setting("fusion.min_views"));
     if (!options.output.pinhole_export.empty())
       export_pinholes(run.project, options.output, run.existing, run.plan.exports, context);
     if (fuse) remove_tiles(options.output.scene, options.fusion.tiles, context);

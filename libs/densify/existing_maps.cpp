@@ -53,25 +53,25 @@ CameraModel camera_of_map(const Project& project, std::size_t image, DmapOrigin 
   const std::string file = depth_map_path(project, image).string();
   const SceneImage& scene_image = project.scene.images[image];
   if (origin == DmapOrigin::damaged)
-    fail(
-        "{}: the depth map or its side file is damaged: remove both files to fuse the other depth "
-        "maps",
-        file);
+    fail_in(file,
+            "the depth map or its side file is damaged: remove both files to fuse the other depth "
+            "maps");
   if (origin == DmapOrigin::foreign && !is_plain_pinhole(scene_image.camera))
-    fail("{}: is the depth map of a pinhole camera, but image {} has a port or a distorted lens",
-         file, scene_image.path);
+    fail_in(file,
+            "is the depth map of a pinhole camera, but image {} has a port or a distorted lens",
+            scene_image.path);
   const DepthMap map = io::read_dmap_header(file, side_to_read(origin));
   const cv::Size size(map.camera.width, map.camera.height);
   if (!same_shape(size, {scene_image.camera.width, scene_image.camera.height}))
-    fail("{}: is {}x{}, but the camera of image {} is {}x{}", file, size.width, size.height,
-         scene_image.path, scene_image.camera.width, scene_image.camera.height);
+    fail_in(file, "is {}x{}, but the camera of image {} is {}x{}", size.width, size.height,
+            scene_image.path, scene_image.camera.width, scene_image.camera.height);
   CameraModel camera = scene_image.camera.resized(size.width, size.height);
   constexpr double kMostPixels = 1;
   if (const double shift = largest_shift(map, camera, scene_image.pose); !(shift < kMostPixels))
-    fail(
-        "{}: its camera projects the scene {:.1f} px away from the camera of image {}: the depth "
-        "map was made with other poses or intrinsics",
-        file, shift, scene_image.path);
+    fail_in(file,
+            "its camera projects the scene {:.1f} px away from the camera of image {}: the depth "
+            "map was made with other poses or intrinsics",
+            shift, scene_image.path);
   return camera;
 }
 
@@ -124,10 +124,10 @@ void require_final_maps(const Project& project, const MatchOptions& options,
                         : map.origin == DmapOrigin::foreign
                             ? "was written by another program"
                             : "was made from other input or with other options";
-    fail(
-        "{}: the depth map {}, and {} makes no depth maps: make all depth maps first, in a run "
-        "without it",
-        depth_map_path(project, image).string(), fault, project.name_of("tile"));
+    fail_in(depth_map_path(project, image),
+            "the depth map {}, and {} makes no depth maps: make all depth maps first, in a run "
+            "without it",
+            fault, setting("tile"));
   }
 }
 
@@ -151,11 +151,12 @@ void check_overwriting(const Project& project, bool overwrite, const ExistingMap
   const bool fusable = std::ranges::all_of(foreign, [&](std::size_t image) {
     return is_plain_pinhole(project.scene.images[image].camera);
   });
-  fail("{}: was written by another program ({} of {} depth maps were): {}move it away, or give {}",
-       file, foreign.size(), project.part.size(),
-       fusable ? "fuse the existing depth maps (" + project.name_of("make_maps false") + "), "
-               : "it counts as the depth map of a pinhole camera: ",
-       project.name_of("overwrite_dmaps true"));
+  fail_in(file,
+          "was written by another program ({} of {} depth maps were): {}move it away, or give {}",
+          foreign.size(), project.part.size(),
+          fusable ? "fuse the existing depth maps (" + setting("make_maps false") + "), "
+                  : "it counts as the depth map of a pinhole camera: ",
+          setting("overwrite_dmaps true"));
 }
 
 void keep_images_with_maps(Project& project, const ExistingMaps& maps, const Context& context) {
@@ -174,7 +175,7 @@ void keep_images_with_maps(Project& project, const ExistingMaps& maps, const Con
     kept.push_back(image);
   }
   if (kept.empty())
-    fail("{}: no depth map found: {} does not exist", project.name_of("make_maps false"),
+    fail("{}: no depth map found: {} does not exist", setting("make_maps false"),
          depth_map_path(project, project.references.front()).string());
   const std::string line = fmt::format("{} of {} images have a depth map, {} by other programs",
                                        kept.size(), project.references.size(), foreign);

@@ -209,8 +209,8 @@ class TileRun {
     if (run_.plan.fused_maps < run_.plan.least_fused_maps + fewer)
       fail(
           "{} {}: tile {} of {} needs {} views, more than expected: allow more memory or use {} {}",
-          run_.context.memory().setting(), run_.context.memory().megabytes(), tile, parts_.size(),
-          needed, run_.project.name_of("tiles"), 2 * parts_.size());
+          setting("max_memory"), run_.context.memory().megabytes(), tile, parts_.size(), needed,
+          setting("tiles"), 2 * parts_.size());
     return run_.plan.fused_maps - fewer;
   }
 

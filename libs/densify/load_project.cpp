@@ -73,7 +73,7 @@ void select_views(Project& project, const ViewOptions& options, const SceneObser
       project.references.push_back(i);
   }
   if (project.references.empty())
-    fail("{}: no image has neighbours to be matched with", project.file().string());
+    fail_in(project.file(), "no image has neighbours to be matched with");
 }
 
 }  // namespace

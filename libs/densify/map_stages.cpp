@@ -106,10 +106,10 @@ class Runner {
     for_each_in_flight(images.size(), run_.in_flight, [&](std::size_t i) {
       error.run(i, [&] {
         if (!finished(stage - 1, images[i]))
-          fail(
-              "{}: is missing, or was made from other input or settings: first make the stage {} "
-              "of all parts",
-              path(stage - 1, images[i]).string(), stages_[stage - 1].name);
+          fail_in(path(stage - 1, images[i]),
+                  "is missing, or was made from other input or settings: first make the stage {} "
+                  "of all parts",
+                  stages_[stage - 1].name);
       });
     });
     error.rethrow();

@@ -81,7 +81,7 @@ void require_memory_for_scene(std::uint64_t bytes, const MemoryBudget& memory) {
     fail(
         "{} {}: {} MB are too little, this scene needs at least {} MB for reading and for "
         "scoring its views",
-        memory.setting(), memory.megabytes(), limit / kMegabyte, least / kMegabyte + 1);
+        setting("max_memory"), memory.megabytes(), limit / kMegabyte, least / kMegabyte + 1);
 }
 
 constexpr std::size_t kMostCached = 48;
@@ -227,7 +227,7 @@ MemoryPlan plan_memory(const Project& project, const Options& options, const Con
   const std::uint64_t fixed = bytes.scene + memory.program_bytes();
   const std::uint64_t least = fixed + least_bytes(bytes, lists, 1);
   if (limit < least)
-    fail("{} {}: {} MB are too little, this scene needs {} MB", memory.setting(),
+    fail("{} {}: {} MB are too little, this scene needs {} MB", setting("max_memory"),
          memory.megabytes(), limit / kMegabyte, least / kMegabyte + 1);
   const MemoryPlan plan = share_out(bytes, lists, limit - fixed, thread_count());
   context.details(

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 class TemporaryFolder {
  public:
   TemporaryFolder() : path_((fs::temp_directory_path() / "axial_densify_XXXXXX").string()) {
-    if (!::mkdtemp(path_.data())) fail("{}: cannot be made", path_);
+    if (!::mkdtemp(path_.data())) fail_in(path_, "cannot be made");
   }
   ~TemporaryFolder() {
     std::error_code ignored;
@@ -37,7 +37,7 @@ void check_options(const Options& options) {
   if (!options.job_as<WholeRun>()) fail("job: a survey in memory needs a WholeRun");
   if (const fs::path& folder = options.output.pinhole_export; !folder.empty())
     fail("{} {}: needs the files of photographs, and the survey is in memory",
-         options.name_of("pinhole_export"), folder.string());
+         setting("pinhole_export"), folder.string());
 }
 
 MemoryResult run_in(const fs::path& folder, Options& options, const Context& context) {

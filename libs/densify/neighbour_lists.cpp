@@ -24,7 +24,7 @@ std::vector<std::uint32_t> numbers_of(const std::string& line, std::size_t image
   for (std::string word; words >> word;) {
     const auto number = parse_finite<std::uint32_t>(word);
     if (!number || *number >= images)
-      fail("{}: '{}' is not an image of the scene, which has {} images", where, word, images);
+      fail_in(where, "'{}' is not an image of the scene, which has {} images", word, images);
     numbers.push_back(*number);
   }
   return numbers;
@@ -52,10 +52,10 @@ std::vector<bool> read_neighbour_lists(const std::filesystem::path& file, Scene&
     const std::string where = fmt::format("{}: line {}", file.string(), ++number);
     const std::vector<std::uint32_t> images = numbers_of(line, scene.images.size(), where);
     if (images.empty()) continue;
-    if (images.size() == 1) fail("{}: image {} has no neighbours", where, images[0]);
-    if (named[images[0]]) fail("{}: image {} has a second line", where, images[0]);
+    if (images.size() == 1) fail_in(where, "image {} has no neighbours", images[0]);
+    if (named[images[0]]) fail_in(where, "image {} has a second line", images[0]);
     if (std::find(images.begin() + 1, images.end(), images[0]) != images.end())
-      fail("{}: image {} is its own neighbour", where, images[0]);
+      fail_in(where, "image {} is its own neighbour", images[0]);
     named[images[0]] = true;
     for (const std::uint32_t image : images)
       if (!scene.images[image].calibrated)

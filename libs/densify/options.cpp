@@ -17,10 +17,8 @@ bool writes_scene_data(const Options& options) {
 }
 
 void check_stage(const StageJob& job, const Options& options) {
-  const auto part = [&] {
-    return fmt::format("{} {}/{}", options.name_of("part"), job.part, job.parts);
-  };
-  const std::string until = options.name_of("until");
+  const auto part = [&] { return fmt::format("{} {}/{}", setting("part"), job.part, job.parts); };
+  const std::string until = setting("until");
   if (job.parts > 0 && job.until.empty()) fail("{}: needs {}", part(), until);
   if (job.parts > 0 && (job.part < 1 || job.part > job.parts))
     fail("{}: must be from 1/{} to {}/{}", part(), job.parts, job.parts, job.parts);
@@ -36,17 +34,16 @@ void check_tiles(const Options& options) {
   const TileJob* job = options.job_as<TileJob>();
   if (!job && fusion.tiles == 1) return;
   const Tiling tiling{fusion.tiles, job ? std::optional(job->tile) : std::nullopt};
-  const SettingNames& name_of = options.survey.files.name_of;
-  check(tiling, name_of);
-  const std::string option = text_of(tiling, name_of);
+  check(tiling);
+  const std::string option = text_of(tiling);
   if (!fusion.fuse || writes_scene_data(options))
     fail("{}: needs fusion, which this run does not make", option);
   const auto refuse = [&](bool given, const std::string& other) {
     if (given) fail("{}: contradicts {}, which needs the whole cloud", option, other);
   };
-  refuse(fusion.estimate_colors == 1, options.name_of("estimate_colors 1"));
-  refuse(fusion.estimate_normals == 1, options.name_of("estimate_normals 1"));
-  refuse(job && !options.output.pinhole_export.empty(), options.name_of("pinhole_export"));
+  refuse(fusion.estimate_colors == 1, setting("estimate_colors 1"));
+  refuse(fusion.estimate_normals == 1, setting("estimate_normals 1"));
+  refuse(job && !options.output.pinhole_export.empty(), setting("pinhole_export"));
 }
 
 }  // namespace
@@ -54,12 +51,11 @@ void check_tiles(const Options& options) {
 void check(const Options& options) {
   if (const auto* job = options.job_as<StageJob>()) check_stage(*job, options);
   if (const auto* job = options.job_as<PlanJob>(); job && !options.matching.make_maps)
-    fail("{} {}: plans only runs that make all depth maps", options.name_of("plan"),
-         job->file.string());
+    fail("{} {}: plans only runs that make all depth maps", setting("plan"), job->file.string());
   const bool cloud =
       options.fusion.fuse && (options.job_as<WholeRun>() || options.job_as<TileJob>());
   if (!options.output.pinhole_export.empty() && !cloud)
-    fail("{} {}: needs a cloud, which this run does not make", options.name_of("pinhole_export"),
+    fail("{} {}: needs a cloud, which this run does not make", setting("pinhole_export"),
          options.output.pinhole_export.string());
   check_tiles(options);
 }

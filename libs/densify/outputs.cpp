@@ -73,15 +73,15 @@ RunFiles files_of(const Options& options) {
   const auto add = [&](const std::string& setting, const fs::path& file) {
     if (!file.empty()) files.others.push_back({setting, file});
   };
-  add(options.name_of("report"), options.output.report);
-  if (const auto* job = options.job_as<PlanJob>()) add(options.name_of("plan"), job->file);
+  add(setting("report"), options.output.report);
+  if (const auto* job = options.job_as<PlanJob>()) add(setting("plan"), job->file);
   if (const auto* job = options.job_as<NeighbourListsJob>())
-    add(options.name_of("neighbour_lists_output"), job->file);
+    add(setting("neighbour_lists_output"), job->file);
   return files;
 }
 
 void check_outputs(const RunFiles& files, const io::SceneFiles& from) {
-  require_no_inputs(files.outputs, files.inputs, from.name_of("output"));
+  require_no_inputs(files.outputs, files.inputs, setting("output"));
   for (const NamedOutput& other : files.others)
     require_not_an_input(other.path, files.inputs, other.setting);
   require_writable(files.scene);
@@ -94,9 +94,9 @@ void check_outputs(const RunFiles& files, const io::SceneFiles& from) {
 void check_outputs(const Project& project, const RunFiles& files, Pictures pictures) {
   std::vector<fs::path> inputs = files.inputs;
   std::ranges::copy(survey::photograph_files(project), std::back_inserter(inputs));
-  require_no_inputs(files.outputs, inputs, project.name_of("output"));
+  require_no_inputs(files.outputs, inputs, setting("output"));
   std::vector<fs::path> outputs = depth_outputs(project, pictures != Pictures::none);
-  require_no_inputs(outputs, inputs, project.name_of("working_folder"));
+  require_no_inputs(outputs, inputs, setting("working_folder"));
   std::ranges::copy(files.outputs, std::back_inserter(outputs));
   outputs.push_back(io::housing_beside(files.scene));
   outputs.push_back(io::geo_offset_beside(files.scene));

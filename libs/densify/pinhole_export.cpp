@@ -223,7 +223,7 @@ class Export {
       context_.warning(
           "{}: {} of {} images have a wider field of view than a pinhole can show: "
           "their edges are cut off",
-          project_.name_of("pinhole_export"), cut, count);
+          setting("pinhole_export"), cut, count);
     context_.info(
         "{}: {} pinhole images, {:.1f} % of their pixels on a known surface: OpenMVS's programs "
         "can use scene.mvs, scene.ply and the depth maps in this folder",

@@ -34,17 +34,17 @@ void check_names(const Project& project) {
     const fs::path name = exported_name(project.scene.images[image], photographs);
     for (const fs::path& file : {name, io::mask_beside(name)})
       if (const auto [other, added] = taken.try_emplace(file, &path); !added)
-        fail("{}: {} and {} would both be exported as images/{}", project.name_of("pinhole_export"),
+        fail("{}: {} and {} would both be exported as images/{}", setting("pinhole_export"),
              *other->second, path, file.string());
   }
 }
 
 void check_folder(const Project& project, const fs::path& folder) {
-  const std::string setting = project.name_of("pinhole_export");
+  const std::string name = setting("pinhole_export");
   std::error_code error;
   if (!fs::exists(folder, error)) return;
   if (!fs::is_directory(folder, error))
-    fail("{} {}: is a file, not a folder", setting, folder.string());
+    fail("{} {}: is a file, not a folder", name, folder.string());
   // The folders that contain inputs, at any depth.
   std::set<fs::path> inputs;
   const auto add = [&](fs::path above) {
@@ -56,12 +56,12 @@ void check_folder(const Project& project, const fs::path& folder) {
   for (const SceneImage& image : project.scene.images) add(fs::path(image.path).parent_path());
   for (const fs::path& input : inputs)
     if (fs::equivalent(folder, input, error))
-      fail("{} {}: contains inputs of this run", setting, folder.string());
+      fail("{} {}: contains inputs of this run", name, folder.string());
   if (fs::exists(folder / kPinholeMarker, error)) {
     if (!io::read_json(folder / kPinholeMarker).is_object())
-      fail("{}: is not the list of an earlier export", (folder / kPinholeMarker).string());
+      fail_in(folder / kPinholeMarker, "is not the list of an earlier export");
   } else if (!fs::is_empty(folder, error))
-    fail("{} {}: contains other files: give an empty or a new folder", setting, folder.string());
+    fail("{} {}: contains other files: give an empty or a new folder", name, folder.string());
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ void check_pinhole_export(const Project& project, const fs::path& folder) {
     fail(
         "{} {}: no image of {} has a port or a distorted lens: OpenMVS can use the other "
         "results of this run directly",
-        project.name_of("pinhole_export"), folder.string(), project.file().string());
+        setting("pinhole_export"), folder.string(), project.file().string());
   check_folder(project, folder);
   check_names(project);
   require_writable_folder(folder);

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "axial/densify.h"
@@ -32,8 +31,6 @@ struct Project : survey::Survey {
   std::vector<std::size_t> references;  // images that get a depth map: indices, ascending
   std::vector<std::size_t> part;        // the references whose maps this run makes (StageJob::part)
   std::string fingerprint;              // the result of fingerprint()
-
-  std::string name_of(std::string_view option) const { return options.files.name_of(option); }
 };
 
 // Returns the images of the part: consecutive elements of `images`. The numbers of images of two

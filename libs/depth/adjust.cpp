@@ -16,10 +16,10 @@ using Ray = refractive::AxialRay<float>;
 void check(const DepthMap& map) {
   const cv::Size size = map.depth.size();
   const auto agrees = [&](const cv::Mat& image) { return image.empty() || image.size() == size; };
-  if (size.empty()) fail("{}: the depth map is empty", map.image_path);
+  if (size.empty()) fail_in(map.image_path, "the depth map is empty");
   if (map.camera.width != size.width || map.camera.height != size.height || !agrees(map.normal) ||
       !agrees(map.confidence)) {
-    fail("{}: the depth map's images and its camera differ in size", map.image_path);
+    fail_in(map.image_path, "the depth map's images and its camera differ in size");
   }
 }
 
@@ -264,7 +264,7 @@ DepthMap adjust_with_neighbours(const DepthMap& reference, std::span<const Depth
                                 const AdjustOptions& options) {
   check(reference);
   if (!reference.depth.isContinuous())
-    fail("{}: the depth map is a part of a larger depth map", reference.image_path);
+    fail_in(reference.image_path, "the depth map is a part of a larger depth map");
   neighbours = neighbours.first(std::min(neighbours.size(), options.max_neighbours));
   Adjuster adjuster{reference, options, rays_of(reference), {}};
   for (const DepthMap& neighbour : neighbours) {

@@ -41,8 +41,8 @@ cv::Mat1b asked_pixels(const DepthMap& map, const cv::Mat1b& grey, const cv::Mat
 DepthMap remove_unconfirmed(const DepthMap& map, const cv::Mat1b& grey, const cv::Mat1b& border,
                             const WeakTextureOptions& options) {
   if (grey.size() != map.depth.size())
-    fail("{}: the image is {}x{}, but its depth map is {}x{}", map.image_path, grey.cols, grey.rows,
-         map.width(), map.height());
+    fail_in(map.image_path, "the image is {}x{}, but its depth map is {}x{}", grey.cols, grey.rows,
+            map.width(), map.height());
   if (map.confidence.empty()) return map;
   const cv::Mat1b asked = asked_pixels(map, grey, border, options.deviation);
   cv::Mat1b confidence(grey.size(), std::uint8_t{0});

@@ -94,7 +94,7 @@ std::string text_of(const pose::HousingNumber& moved, const std::string& port) {
       with_unit(moved.sigma_before, moved.unit));
 }
 
-std::string text_of(const FreedNumber& freed, double scale_sigma, SettingNames name_of) {
+std::string text_of(const FreedNumber& freed, double scale_sigma) {
   const pose::HousingNumber& number = freed.number;
   const std::string deviations = freed.deviations < 100 ? fmt::format("{:.0f}", freed.deviations)
                                                         : std::string("more than 100");
@@ -108,7 +108,7 @@ std::string text_of(const FreedNumber& freed, double scale_sigma, SettingNames n
       "{:.2g} % of its distance. {}Measure this value again, or adjust it with {}",
       number.name, with_unit(number.now, number.unit), with_unit(number.before, number.unit),
       deviations, freed.rms_found, freed.rms_stated, 100 * freed.effect, lengths,
-      name_of("refine"));
+      setting("refine"));
 }
 
 std::vector<std::string> dropped_lines(const pose::RefineReport& report,

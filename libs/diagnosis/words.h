@@ -44,9 +44,9 @@ std::string text_of(const pose::HousingNumber& moved, const std::string& port);
 
 // The number `freed` and its two values. `scale_sigma`: Uncertainty::scale_sigma, the relative
 // standard deviation of lengths. If it is 0 or infinite, the text does not mention lengths.
-// Otherwise it says that lengths have a larger error than `scale_sigma`. `name_of` gives the name
-// of the setting "refine", the list of numbers to adjust.
-std::string text_of(const FreedNumber& freed, double scale_sigma, SettingNames name_of = own_name);
+// Otherwise it says that lengths have a larger error than `scale_sigma`. It marks the
+// setting "refine", the list of numbers to adjust (setting() in axial/base.h).
+std::string text_of(const FreedNumber& freed, double scale_sigma);
 
 // One line for each reason (errors, weak_images and weak_points of DropCounts) for which refine()
 // dropped more than a quarter of the observations. `limits` are the limits that refine() used.

@@ -158,7 +158,7 @@ fs::path densified(const Chain& chain, const std::string& name, const SimulatedS
 double densify_seconds(const fs::path& dense) {
   const fs::path file = dense / kDensifySeconds;
   const auto seconds = parse_finite<double>(read_file(file));
-  if (!seconds) fail("{}: is not a number of seconds", file.string());
+  if (!seconds) fail_in(file, "is not a number of seconds");
   return *seconds;
 }
 

@@ -45,7 +45,7 @@ fs::path model_of(const Chain& chain, const CompletenessOptions& options,
                   const SimulatedScene& scene) {
   if (options.poses == "true") return scene.model();
   const ColmapPoses poses = colmap_poses(chain, "colmap", scene, "air", true_lens(scene));
-  if (poses.model.empty()) fail("{}: COLMAP found no poses", scene.images("air").string());
+  if (poses.model.empty()) fail_in(scene.images("air"), "COLMAP found no poses");
   return poses.model;
 }
 

@@ -56,7 +56,7 @@ Words evaluation_arguments(const fs::path& cloud, const SimulatedScene& scene,
 cv::Mat1b grey_of(const SimulatedScene& scene, const std::string& medium, const DepthMap& map) {
   const fs::path file = scene.images(medium) / fs::path(map.image_path).filename();
   cv::Mat1b grey = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
-  if (grey.empty()) fail("{}: cannot be read", file.string());
+  if (grey.empty()) fail_in(file, "cannot be read");
   cv::resize(grey, grey, map.depth.size(), 0, 0, cv::INTER_AREA);
   return grey;
 }

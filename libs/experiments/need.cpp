@@ -18,7 +18,7 @@ Calibration calibration(const Chain& chain, const NeedCase& one, const Simulated
   const SimulatedScene first = simulated(chain, *one.calibrated_in);
   const ColmapPoses poses =
       colmap_poses(chain, "self-calibrated", first, "water", self_calibration(first));
-  if (poses.model.empty()) fail("{}: COLMAP found no poses", first.images("water").string());
+  if (poses.model.empty()) fail_in(first.images("water"), "COLMAP found no poses");
   return calibration_of(poses.model);
 }
 

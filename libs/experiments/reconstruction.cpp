@@ -127,7 +127,7 @@ Json fused_for_two(const Chain& chain, const std::filesystem::path& dense,
 Json clouds_on_colmap_poses(const Chain& chain, const Study& study) {
   const SimulatedScene scene = simulated(chain, study.scene);
   const ColmapPoses poses = colmap_poses(chain, "colmap", scene, "air", true_lens(scene));
-  if (poses.model.empty()) fail("{}: COLMAP found no poses", scene.images("air").string());
+  if (poses.model.empty()) fail_in(scene.images("air"), "COLMAP found no poses");
   Json result{{"images", poses.images}, {"centre_rms", poses.centre_rms}};
   for (const char* medium : {"air", "water"})
     result["photographs"][medium] = photograph(scene, medium, kPhotographWidth);

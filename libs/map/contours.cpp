@@ -28,7 +28,7 @@ void require_complete(const std::filesystem::path& path) {
   in.read(end.data(), static_cast<std::streamsize>(end.size()));
   std::erase_if(end, [](unsigned char c) { return std::isspace(c) != 0; });
   if (!in || !end.ends_with("]}"))
-    fail("{}: cannot be written: only a part of it was written: is the disk full?", path.string());
+    fail_in(path, "cannot be written: only a part of it was written: is the disk full?");
 }
 
 }  // namespace

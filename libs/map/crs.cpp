@@ -12,16 +12,16 @@
 
 namespace axial::map {
 
-std::string crs_of_epsg(int code, SettingNames name_of) {
+std::string crs_of_epsg(int code) {
   const GdalErrors errors;
   const auto destroy = [](OGRSpatialReferenceH system) { OSRDestroySpatialReference(system); };
   const std::unique_ptr<std::remove_pointer_t<OGRSpatialReferenceH>, decltype(destroy)> system(
       OSRNewSpatialReference(nullptr), destroy);
   if (OSRImportFromEPSG(system.get(), code) != OGRERR_NONE)
-    fail("{} {}: is no coordinate reference system that PROJ knows", name_of("epsg"), code);
+    fail("{} {}: is no coordinate reference system that PROJ knows", setting("epsg"), code);
   if (!OSRIsProjected(system.get()) ||
       std::abs(OSRGetLinearUnits(system.get(), nullptr) - 1) > 1e-12)
-    fail("{} {}: is no projected coordinate reference system with metres as unit", name_of("epsg"),
+    fail("{} {}: is no projected coordinate reference system with metres as unit", setting("epsg"),
          code);
   char* text = nullptr;
   OSRExportToWkt(system.get(), &text);

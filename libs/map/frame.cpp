@@ -136,15 +136,13 @@ Eigen::Vector3d fitted_up(const Mesh& mesh, std::span<const Eigen::Vector3d> cen
   return side > 0 ? plane.normal : Eigen::Vector3d(-plane.normal);
 }
 
-void require_possible(double columns, double rows, double pixel, SettingNames name_of,
-                      double most) {
+void require_possible(double columns, double rows, double pixel, double most) {
   if (!(std::max(columns, rows) <= most))
     fail("{} {:g}: the map would have {:.0f} x {:.0f} pixels, and {:.0f} per side is the most",
-         name_of("ground_sample_distance"), pixel, columns, rows, most);
+         setting("ground_sample_distance"), pixel, columns, rows, most);
 }
 
-MapGrid grid_around(const Mesh& mesh, const MapFrame& frame, double pixel, SettingNames name_of,
-                    double most) {
+MapGrid grid_around(const Mesh& mesh, const MapFrame& frame, double pixel, double most) {
   Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Array2d high = -low;
   for (const auto& face : mesh.faces)
@@ -158,7 +156,7 @@ MapGrid grid_around(const Mesh& mesh, const MapFrame& frame, double pixel, Setti
   low = (low / pixel + kTolerance).floor();
   high = (high / pixel - kTolerance).ceil().max(low + 1);
   const Eigen::Array2d size = high - low;
-  require_possible(size.x(), size.y(), pixel, name_of, most);
+  require_possible(size.x(), size.y(), pixel, most);
   return {low.x() * pixel, high.y() * pixel, pixel, static_cast<int>(size.x()),
           static_cast<int>(size.y())};
 }

@@ -26,8 +26,7 @@ struct FittedPlane {
 FittedPlane fitted_plane(const Mesh& mesh);
 
 // Throws an Error if a side of a map has more than `most` pixels. The message calls the width of a
-// pixel by name_of("ground_sample_distance").
-void require_possible(double columns, double rows, double pixel, SettingNames name_of,
-                      double most = kMostPixels);
+// pixel the setting "ground_sample_distance".
+void require_possible(double columns, double rows, double pixel, double most = kMostPixels);
 
 }  // namespace axial::map

@@ -99,12 +99,12 @@ void CPL_STDCALL GdalErrors::collect(CPLErr level, CPLErrorNum number, const cha
 
 void GdalErrors::require_written(bool works, const fs::path& file) const {
   if (works && !failed_) return;
-  fail("{}: cannot be written: {}", file.string(), reason_to_write(file, number_, system_error_));
+  fail_in(file, "cannot be written: {}", reason_to_write(file, number_, system_error_));
 }
 
 void GdalErrors::require_read(bool works, const fs::path& file) const {
   if (works && !failed_) return;
-  fail("{}: cannot be read: {}", file.string(), reason_to_read(file, number_));
+  fail_in(file, "cannot be read: {}", reason_to_read(file, number_));
 }
 
 }  // namespace axial::map

@@ -121,7 +121,7 @@ void GeoTiff::state_kind(const std::string& kind) {
 void GeoTiff::write(const cv::Rect& at, const cv::Mat& pixels) {
   State& s = *state_;
   if (pixels.type() != s.facts.cv_type || pixels.size() != at.size())
-    fail("{}: a block has the wrong type or size", s.path.string());
+    fail_in(s.path, "a block has the wrong type or size");
   const GdalErrors errors;
   const auto bytes = static_cast<GSpacing>(pixels.elemSize1());
   const CPLErr done = GDALDatasetRasterIOEx(s.file.get(), GF_Write, at.x, at.y, at.width, at.height,

@@ -49,11 +49,11 @@ std::string words_of(int count, GDALDataType type) {
 void check_bands(GDALDatasetH file, MapKind kind, const fs::path& path) {
   const BandsOfKind wanted = bands_of(kind);
   const int count = GDALGetRasterCount(file);
-  if (count == 0) fail("{}: has no bands", path.string());
+  if (count == 0) fail_in(path, "has no bands");
   const GDALDataType type = GDALGetRasterDataType(GDALGetRasterBand(file, 1));
   if (count != wanted.count || type != wanted.type)
-    fail("{}: has {}, but a map of {} has {}", path.string(), words_of(count, type), wanted.name,
-         words_of(wanted.count, wanted.type));
+    fail_in(path, "has {}, but a map of {} has {}", words_of(count, type), wanted.name,
+            words_of(wanted.count, wanted.type));
 }
 
 // A file that states no kind is refused, too: another program or an earlier version wrote it, and
@@ -64,9 +64,8 @@ void check_kind(GDALDatasetH file, const std::string& wanted, const fs::path& pa
   if (wanted.empty() || found == wanted) return;
   const char* program = wanted.starts_with("map.") ? "MapSurface" : "CompareSurveys";
   if (found.empty())
-    fail("{}: AXIALMVS_KIND is missing: must be {}, as {} writes it", path.string(), wanted,
-         program);
-  fail("{}: AXIALMVS_KIND {}: must be {}, as {} writes it", path.string(), found, wanted, program);
+    fail_in(path, "AXIALMVS_KIND is missing: must be {}, as {} writes it", wanted, program);
+  fail_in(path, "AXIALMVS_KIND {}: must be {}, as {} writes it", found, wanted, program);
 }
 
 // GDAL reads whole blocks. Damaged numbers can make them as large as all memory.
@@ -77,8 +76,8 @@ void check_blocks(GDALDatasetH file, const fs::path& path) {
   GDALGetBlockSize(band, &columns, &rows);
   const int bytes = GDALGetDataTypeSizeBytes(GDALGetRasterDataType(band));
   if (double{1} * columns * rows * bytes * GDALGetRasterCount(file) > kMost)
-    fail("{}: has blocks of {} x {} pixels: it is damaged, or must be stored in smaller tiles",
-         path.string(), columns, rows);
+    fail_in(path, "has blocks of {} x {} pixels: it is damaged, or must be stored in smaller tiles",
+            columns, rows);
 }
 
 MapGrid grid_of(GDALDatasetH file, const fs::path& path) {
@@ -88,8 +87,7 @@ MapGrid grid_of(GDALDatasetH file, const fs::path& path) {
   constexpr double kTolerance = 1e-6;
   if (!is_stated || !is_finite || !(t[1] > 0) || t[2] != 0 || t[4] != 0 ||
       !(std::abs(t[5] + t[1]) <= kTolerance * t[1]))
-    fail("{}: has no geotransform of a map with square pixels whose y axis points upwards",
-         path.string());
+    fail_in(path, "has no geotransform of a map with square pixels whose y axis points upwards");
   return {t[0], t[3], t[1], GDALGetRasterXSize(file), GDALGetRasterYSize(file)};
 }
 
@@ -102,7 +100,7 @@ cv::Mat with_memory(const fs::path& path, const Read& read) {
     throw;
   } catch (const std::exception& error) {
     if (!is_out_of_memory(error)) throw;
-    fail("{}: cannot be read: it is damaged, or there is not enough memory for it", path.string());
+    fail_in(path, "cannot be read: it is damaged, or there is not enough memory for it");
   }
 }
 

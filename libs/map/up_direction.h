@@ -11,11 +11,10 @@ namespace axial::map {
 
 // Parses the upward direction of a map, "X,Y,Z", of any length above 0. The largest component of
 // the result is 1 or -1. Empty for an empty text. `epsg`: the code of the map's coordinate
-// reference system; 0: none. Throws an Error that names the setting by name_of("up") if the text is
+// reference system; 0: none. Throws an Error that names the setting "up" if the text is
 // not three finite numbers, if all are zero, or if `epsg` is given and the direction is not that of
 // the z axis, along which a reference system has heights.
-std::optional<Eigen::Vector3d> parse_up(const std::string& text, int epsg,
-                                        SettingNames name_of = own_name);
+std::optional<Eigen::Vector3d> parse_up(const std::string& text, int epsg);
 
 // The text "X,Y,Z" of a direction, as parse_up() reads it.
 std::string up_text(const Eigen::Vector3d& up);

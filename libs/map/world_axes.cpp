@@ -30,7 +30,7 @@ std::vector<double> numbers_in(GDALDatasetH file, const char* item, std::size_t 
   std::vector<double> numbers;
   for (double number = 0; words >> number;) numbers.push_back(number);
   if (!words.eof() || numbers.size() != count)
-    fail("{}: {} {}: must be {} numbers", path.string(), item, text, count);
+    fail_in(path, "{} {}: must be {} numbers", item, text, count);
   return numbers;
 }
 
@@ -58,7 +58,7 @@ std::optional<WorldAxes> axes_in(GDALDatasetH file, const std::filesystem::path&
   constexpr double kTolerance = 1e-6;
   if (!((result.axes * result.axes.transpose()).isIdentity(kTolerance) &&
         result.axes.determinant() > 0 && result.offset.allFinite()))
-    fail("{}: {}: is no rotation", path.string(), kAxes);
+    fail_in(path, "{}: is no rotation", kAxes);
   return result;
 }
 

@@ -141,7 +141,7 @@ void check_contours(const MapContent& content, const WriteOptions& options) {
     }
   if ((high - low) / options.contour_interval > kMost)
     fail("{} {}: makes more than {} contour lines on a relief of {:.4g} m",
-         options.name_of("contour_interval"), options.contour_interval, kMost, high - low);
+         setting("contour_interval"), options.contour_interval, kMost, high - low);
 }
 
 }  // namespace
@@ -161,7 +161,7 @@ MapReport write_maps(const MapFiles& files, const MapContent& content, const Wri
   if (!files.errors.empty() && content.errors.empty()) fail("the expected errors are missing");
   if (!files.contours.empty() && (files.heights.empty() || !(options.contour_interval > 0)))
     fail("{} {}: contour lines need an interval above 0 and the map of heights",
-         options.name_of("contour_interval"), options.contour_interval);
+         setting("contour_interval"), options.contour_interval);
   if (!files.picture.empty() && files.colors.empty()) fail("a picture needs the map of colours");
   if (!files.contours.empty()) check_contours(content, options);
   for (const fs::path& path : files.all())  // of the blocks, too

@@ -32,15 +32,14 @@ MergedPoints merged(PointCloud cloud, const Scene& scene, const ViewRays& rays,
   return points;
 }
 
-void check_memory(std::size_t points, const ReconstructOptions& options,
-                  const MemoryBudget& memory) {
+void check_memory(std::size_t points, const MemoryBudget& memory) {
   const std::uint64_t needed = bytes_needed(points);
   if (memory.is_limited() && needed > memory.limit())
     fail(
         "{} merged points need about {} MB, but {} is {}; a larger {} merges more points, and a "
         "larger {} needs less memory",
-        points, needed / kMegabyte, memory.setting(), memory.limit() / kMegabyte,
-        options.name_of("merge.min_distance"), options.name_of("tiles"));
+        points, needed / kMegabyte, setting("max_memory"), memory.limit() / kMegabyte,
+        setting("merge.min_distance"), setting("tiles"));
 }
 
 Surface cut_surface(const MergedPoints& points, const ViewRays& rays,
@@ -101,7 +100,7 @@ void check_points(const PointCloud& cloud, const Scene& scene, std::size_t first
 Mesh reconstruct_merged(MergedPoints points, const Scene& scene, const ViewRays& rays,
                         const ReconstructOptions& options, const Context& context) {
   if (points.size() < 4) return {};
-  check_memory(points.size(), options, context.memory());
+  check_memory(points.size(), context.memory());
   Surface surface = cut_surface(points, rays, options, context);
   points = {};
   return_freed_memory();
@@ -124,7 +123,7 @@ Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions&
   const ViewRays rays(scene);
   MergedPoints points = merged(std::move(cloud), scene, rays, options, context);
   return_freed_memory();
-  check_memory(points.count, options, context.memory());
+  check_memory(points.count, context.memory());
   ReconstructOptions settings = options;
   settings.clean.may_be_empty = false;
   Mesh mesh = reconstruct_merged(std::move(points), scene, rays, settings, context);

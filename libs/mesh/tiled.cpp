@@ -102,14 +102,14 @@ class TiledRun {
     try {
       return reconstruct_merged(std::move(points), scene_, rays_, options_, context_);
     } catch (const Error& error) {
-      fail("tile {} of {}: {}", tile + 1, count_, error.what());
+      fail("tile {} of {}: {}", tile + 1, count_, error.text());
     }
   }
 
   void require_memory(std::uint64_t bytes, const std::string& work) const {
     const MemoryBudget& memory = context_.memory();
     if (memory.is_limited() && bytes > memory.limit())
-      fail("{} needs about {} MB, but {} is {}", work, bytes / kMegabyte, memory.setting(),
+      fail("{} needs about {} MB, but {} is {}", work, bytes / kMegabyte, setting("max_memory"),
            memory.limit() / kMegabyte);
   }
 

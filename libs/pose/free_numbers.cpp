@@ -59,17 +59,17 @@ const NumberGroup& group_named(std::string_view word) {
 }
 
 void check_known(const std::string& asked, const Words& words, const Sigmas& sigmas,
-                 const Bundle& bundle, const AdjustOptions& adjust, SettingNames name_of) {
+                 const Bundle& bundle, const AdjustOptions& adjust) {
   const bool metric = adjust.points_known || adjust.poses_known || adjust.know_lengths();
   if (words.contains("distance") && !is_measured(group_named("distance"), sigmas, bundle) &&
       !metric)
     fail(
         "{}: the distance needs {}, {} or {}, because the photographs show only its ratio to other "
         "lengths",
-        asked, name_of("distance_sigma"), name_of("distances"), name_of("poses_known"));
+        asked, setting("distance_sigma"), setting("distances"), setting("poses_known"));
   if (words.contains("thickness") && !is_measured(group_named("thickness"), sigmas, bundle))
     fail("{}: the thickness needs {}, because photographs hardly distinguish it from the distance",
-         asked, name_of("thickness_sigma"));
+         asked, setting("thickness_sigma"));
 }
 
 // `setting` and `refine` are the names of the settings in messages.
@@ -83,10 +83,9 @@ void check_sigma(const Words& words, const std::string& word, double sigma,
 }
 
 // `refine`: the setting that names or implies the words.
-void check_sigmas(const Words& words, const Sigmas& sigmas, const std::string& refine,
-                  SettingNames name_of) {
+void check_sigmas(const Words& words, const Sigmas& sigmas, const std::string& refine) {
   for (const NumberGroup& group : number_groups())
-    check_sigma(words, std::string(group.word), sigmas.*group.sigma, name_of(group.setting),
+    check_sigma(words, std::string(group.word), sigmas.*group.sigma, setting(group.setting),
                 refine);
 }
 
@@ -139,12 +138,12 @@ Words all_words(const Sigmas& sigmas, const Bundle& bundle) {
 
 // The words of a list, after all checks.
 Words listed_words(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
-                   const AdjustOptions& adjust, SettingNames name_of) {
-  const std::string asked = name_of("refine") + " " + refine;
+                   const AdjustOptions& adjust) {
+  const std::string asked = setting("refine") + " " + refine;
   const Words words = words_of(refine, asked);
   check_ports(asked, words, bundle);
-  check_sigmas(words, sigmas, name_of("refine"), name_of);
-  check_known(asked, words, sigmas, bundle, adjust, name_of);
+  check_sigmas(words, sigmas, setting("refine"));
+  check_known(asked, words, sigmas, bundle, adjust);
   return words;
 }
 
@@ -181,8 +180,8 @@ void declare_sigmas(OptionList& list, Sigmas& sigmas) {
 }
 
 void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
-                      AdjustOptions& adjust, SettingNames name_of) {
-  const Words words = listed_words(refine, sigmas, bundle, adjust, name_of);
+                      AdjustOptions& adjust) {
+  const Words words = listed_words(refine, sigmas, bundle, adjust);
   set_unknowns(words, {sigmas, {}, {}}, bundle, adjust);
 }
 
@@ -194,16 +193,16 @@ Unknowns unknowns_with(PortKind kind, const Sigmas& measured) {
 }
 
 void set_estimated_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
-                           AdjustOptions& adjust, SettingNames name_of) {
+                           AdjustOptions& adjust) {
   Sigmas if_fixed = ruler_sigmas();
   if_fixed.thickness = 0;
   const bool automatic = refine == "auto";
   Words words;
   if (automatic && !adjust.poses_known) words = all_words(sigmas, bundle);
   if (automatic || refine == "none")
-    check_sigmas(words, sigmas, name_of("refine") + " " + refine, name_of);
+    check_sigmas(words, sigmas, setting("refine") + " " + refine);
   else
-    words = listed_words(refine, sigmas, bundle, adjust, name_of);
+    words = listed_words(refine, sigmas, bundle, adjust);
   set_unknowns(words, {sigmas, automatic ? ruler_sigmas() : Sigmas{}, if_fixed}, bundle, adjust);
 }
 

@@ -43,10 +43,9 @@ Unknowns unknowns_with(PortKind kind, const Sigmas& measured);
 //
 // Messages name the settings "refine", "normal_sigma", "distance_sigma", "centre_sigma",
 // "thickness_sigma", "index_sigma" and "focal_sigma". A message about an unknown length also names
-// "distances" and "poses_known", the settings of AdjustOptions that make lengths known. `name_of`
-// turns a name into the name that the user knows.
+// "distances" and "poses_known", the settings of AdjustOptions that make lengths known.
 void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
-                      AdjustOptions& adjust, SettingNames name_of = own_name);
+                      AdjustOptions& adjust);
 
 // The same for measured numbers of which some may be estimated. `refine` is "auto", "none" or a
 // list as above:
@@ -57,7 +56,7 @@ void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bun
 //   standard deviations that the cameras state, or those of ruler_sigmas(). Exception: a thickness
 //   counts as exact unless a camera states its standard deviation.
 void set_estimated_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
-                           AdjustOptions& adjust, SettingNames name_of = own_name);
+                           AdjustOptions& adjust);
 
 // The words of `refine` (set_free_numbers) that free the place of the port: "normal,distance" for a
 // flat port, "centre" for a dome.

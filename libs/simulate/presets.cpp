@@ -171,7 +171,7 @@ void check_ports(const Preset& preset) {
     try {
       check_port(port_of_view(preset, preset.views[i]), preset.lens);
     } catch (const Error& error) {
-      fail("view {}: {}", i, error.what());
+      fail("view {}: {}", i, error.text());
     }
   }
 }

@@ -18,14 +18,13 @@ std::size_t masks_of_scene(const Scene& scene) {
 
 void tell_of_unused(const Survey& survey, const Context& context) {
   const Options& options = survey.options;
-  const SettingNames name_of = options.files.name_of;
   if (!options.mask_folder.empty())
-    context.warning("{} {}: is not used, because {} is {}", name_of("mask_folder"),
-                    options.mask_folder.string(), name_of("ignore_mask_label"),
+    context.warning("{} {}: is not used, because {} is {}", setting("mask_folder"),
+                    options.mask_folder.string(), setting("ignore_mask_label"),
                     options.ignore_mask_label);
   else if (const std::size_t named = masks_of_scene(survey.scene))
     context.info("{}: contains masks of {} images, which are used only with {}",
-                 survey.file().string(), named, name_of("ignore_mask_label"));
+                 survey.file().string(), named, setting("ignore_mask_label"));
 }
 
 void warn_of_ignored_masks(const Survey& survey, const std::vector<io::FoundMask>& masks,
@@ -34,8 +33,7 @@ void warn_of_ignored_masks(const Survey& survey, const std::vector<io::FoundMask
   const std::size_t named = folder.empty() ? 0 : masks_of_scene(survey.scene);
   if (named > 0)
     context.warning("{} {}: is used instead of the masks that {} names for {} images",
-                    survey.options.files.name_of("mask_folder"), folder.string(),
-                    survey.file().string(), named);
+                    setting("mask_folder"), folder.string(), survey.file().string(), named);
   const io::IgnoredMasks ignored = io::ignored_masks(masks);
   if (ignored.count > 0)
     context.warning("{}: is used; {} differs and is ignored ({} images have two different masks)",
@@ -57,7 +55,7 @@ void choose_masks(Survey& survey, const Context& context) {
     if (!masks[v].path.empty()) continue;
     const std::string photograph = survey.views[v].file.string();
     if (!options.mask_folder.empty())
-      fail("{} {}: no mask for image {}: looked for {}", options.files.name_of("mask_folder"),
+      fail("{} {}: no mask for image {}: looked for {}", setting("mask_folder"),
            options.mask_folder.string(), photograph, masks[v].looked_for);
     context.warning("{}: no mask: looked for {}", photograph, masks[v].looked_for);
   }
@@ -83,8 +81,8 @@ void LabelCheck::warn_if_absent(std::span<const View> views, const Context& cont
   if (others_.count() > kMost) labels += fmt::format(" and {} more", others_.count() - kMost);
   const auto first =
       std::ranges::find_if(views, [](const View& view) { return !view.mask.empty(); });
-  context.warning("{} {}: no mask has this label; {} and the other masks have {}", setting_, label_,
-                  first->mask.string(), labels);
+  context.warning("{} {}: no mask has this label; {} and the other masks have {}",
+                  setting("ignore_mask_label"), label_, first->mask.string(), labels);
 }
 
 }  // namespace axial::survey

@@ -8,7 +8,6 @@
 #include <mutex>
 #include <opencv2/core.hpp>
 #include <span>
-#include <string>
 
 #include "survey/survey.h"
 
@@ -24,8 +23,8 @@ void choose_masks(Survey& survey, const Context& context);
 // Collects labels of masks to tell whether any mask has the label to ignore. Thread-safe.
 class LabelCheck {
  public:
-  // `label`: the label to ignore. `setting`: its name in messages.
-  LabelCheck(int label, std::string setting) : label_(label), setting_(std::move(setting)) {}
+  // `label`: the label to ignore, which the warning calls the setting "ignore_mask_label".
+  explicit LabelCheck(int label) : label_(label) {}
 
   // Adds the labels of one mask. Precondition: the label to ignore is not negative.
   void add(const cv::Mat1w& labels);
@@ -37,7 +36,6 @@ class LabelCheck {
 
  private:
   const int label_;
-  const std::string setting_;
   std::atomic<bool> seen_ = false;
   std::mutex mutex_;
   std::bitset<65536> others_;

@@ -108,11 +108,11 @@ io::Photograph photograph_of(const MemorySurvey& survey, std::size_t image) {
   const SceneImage& of = survey.scene.images[image];
   const cv::Size size(of.camera.width, of.camera.height);
   if (pixels.type() != CV_8UC3 || pixels.size() != size)
-    fail("{}: the photograph is not of {} x {} pixels with three channels of 8 bits", of.path,
-         size.width, size.height);
+    fail_in(of.path, "the photograph is not of {} x {} pixels with three channels of 8 bits",
+            size.width, size.height);
   if (!opaque.empty() && (!survey.has_masks || opaque.size() != size))
-    fail("{}: the mask has {} x {} pixels, {}", of.path, opaque.cols, opaque.rows,
-         survey.has_masks ? "the photograph another number" : "but has_masks is false");
+    fail_in(of.path, "the mask has {} x {} pixels, {}", opaque.cols, opaque.rows,
+            survey.has_masks ? "the photograph another number" : "but has_masks is false");
   return photograph;
 }
 

@@ -44,8 +44,8 @@ void PhotographCheck::report(const Context& context) const {
     foreign += is_foreign(facts) ? 1 : 0;
   }
   if (2 * blank > taken)
-    fail("{}: {} of {} photographs are blank: all of each has one grey value", scene_file_.string(),
-         blank, taken);
+    fail_in(scene_file_, "{} of {} photographs are blank: all of each has one grey value", blank,
+            taken);
   if (2 * foreign > judged)
     return context.warning(
         "{}: {} of {} photographs do not show the same ground at the scene's sparse points: do the "

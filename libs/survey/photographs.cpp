@@ -53,9 +53,7 @@ cv::Mat1b working_mask(const View& view, const cv::Mat1b& opaque, int ignored_la
 }
 
 Photographs::Photographs(const Survey& survey)
-    : survey_(survey),
-      labels_(survey.options.ignore_mask_label, survey.options.files.name_of("ignore_mask_label")) {
-}
+    : survey_(survey), labels_(survey.options.ignore_mask_label) {}
 
 Pixels Photographs::read(std::size_t view, Channels channels) const {
   const View& from = survey_.views[view];

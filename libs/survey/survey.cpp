@@ -41,7 +41,7 @@ std::vector<std::size_t> images_to_use(const Survey& survey) {
   for (std::size_t i = 0; i < survey.scene.images.size(); ++i)
     if (survey.scene.images[i].calibrated && (list.empty() || named.contains(i)))
       images.push_back(i);
-  if (images.empty()) fail("{}: has no calibrated image to use", survey.file().string());
+  if (images.empty()) fail_in(survey.file(), "has no calibrated image to use");
   return images;
 }
 
@@ -74,8 +74,7 @@ void find_bit_depth(Survey& survey) {
     headers.push_back(view.header);
   }
   const Options& options = survey.options;
-  survey.bit_depth = io::common_bit_depth(photographs, headers, options.bit_depth,
-                                          options.files.name_of("bit_depth"));
+  survey.bit_depth = io::common_bit_depth(photographs, headers, options.bit_depth);
 }
 
 }  // namespace

@@ -56,8 +56,7 @@ std::set<std::size_t> images_in(const fs::path& file, const Scene& scene) {
     while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
     if (line.empty() || line.front() == '#') continue;
     const std::set<std::size_t> named = words.named_by(std::string(line));
-    if (named.empty())
-      fail("{}: line {}: no image has the ID or the name {}", file.string(), number, line);
+    if (named.empty()) fail_in(file, "line {}: no image has the ID or the name {}", number, line);
     images.insert(named.begin(), named.end());
   }
   return images;

@@ -39,16 +39,16 @@ void read_target_table(const std::filesystem::path& file, Family& family) {
     if (trimmed(line).empty() || trimmed(line).starts_with('#')) continue;
     const auto fields = io::split_fields(line, ',');
     if (!fields || fields->size() != 2 || fields->back().empty())
-      fail("{}: must be CODE,LABEL", where);
+      fail_in(where, "must be CODE,LABEL");
     const std::string& label = fields->back();
     const auto code = parse_number<std::uint32_t>(fields->front());
     const auto number = code ? number_of_code(*code, family, rings) : std::nullopt;
-    if (!number) fail("{}: '{}' is no code of {}", where, fields->front(), family.name);
-    if (!labels.insert(label).second) fail("{}: the label '{}' occurs twice", where, label);
+    if (!number) fail_in(where, "'{}' is no code of {}", fields->front(), family.name);
+    if (!labels.insert(label).second) fail_in(where, "the label '{}' occurs twice", label);
     if (!family.labels.emplace(*number, label).second)
-      fail("{}: the code {} occurs twice", where, fields->front());
+      fail_in(where, "the code {} occurs twice", fields->front());
   }
-  if (family.labels.empty()) fail("{}: has no line CODE,LABEL", file.string());
+  if (family.labels.empty()) fail_in(file, "has no line CODE,LABEL");
 }
 
 }  // namespace axial::targets

@@ -187,7 +187,7 @@ std::vector<std::uint32_t> label_by_tiles(const Mesh& mesh, std::span<const Face
 }  // namespace
 
 MemoryBudget Sources::less_by_tiles(const MemoryBudget& budget) const {
-  return budget.with_advice("; a larger " + options.name_of("tiles") + " needs less memory");
+  return budget.with_advice("; a larger " + setting("tiles") + " needs less memory");
 }
 
 std::vector<std::uint32_t> label_faces(const Mesh& mesh, std::span<const FacePair> pairs,

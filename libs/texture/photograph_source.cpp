@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "texture/photograph_source.h"
 
-#include "base/naming.h"
-
 namespace axial::texture {
 
 ImageSource source_of(const survey::Photographs& photographs) {
   return [&](std::size_t view) {
-    return already_named([&] {
-      survey::Pixels pixels = photographs.read(view, survey::Channels::color);
-      return ViewImage{std::move(pixels.color), std::move(pixels.mask)};
-    });
+    survey::Pixels pixels = photographs.read(view, survey::Channels::color);
+    return ViewImage{std::move(pixels.color), std::move(pixels.mask)};
   };
 }
 

@@ -8,7 +8,7 @@
 namespace axial::texture {
 
 // Reads the photographs in colours. `photographs` must outlive the result. An Error of the result
-// names the file of the photograph or mask (already_named() in base/naming.h).
+// names the file of the photograph or mask.
 ImageSource source_of(const survey::Photographs& photographs);
 
 }  // namespace axial::texture

@@ -21,15 +21,15 @@ void silence_libraries() {
 }  // namespace
 
 Clip::Clip(const std::filesystem::path& path) : path_(path) {
-  if (!std::filesystem::exists(path)) fail("{}: not found", path.string());
-  if (!std::filesystem::is_regular_file(path)) fail("{}: is not a file", path.string());
+  if (!std::filesystem::exists(path)) fail_in(path, "not found");
+  if (!std::filesystem::is_regular_file(path)) fail_in(path, "is not a file");
   silence_libraries();
   if (!capture_.open(path.string(), cv::CAP_FFMPEG))
-    fail("{}: is not a video that can be decoded", path.string());
+    fail_in(path, "is not a video that can be decoded");
   capture_.set(cv::CAP_PROP_ORIENTATION_AUTO, 0);
   per_second_ = capture_.get(cv::CAP_PROP_FPS);
   if (!(per_second_ > 0 && per_second_ < kMostPerSecond))
-    fail("{}: states a frame rate of {} Hz", path.string(), per_second_);
+    fail_in(path, "states a frame rate of {} Hz", per_second_);
   const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
   if (count > 0 && count < kMostFrames) stated_count_ = static_cast<std::size_t>(count);
 }
@@ -41,7 +41,7 @@ bool Clip::next() {
 cv::Mat3b Clip::frame() {
   cv::Mat pixels;
   if (!capture_.retrieve(pixels) || pixels.type() != CV_8UC3)
-    fail("{}: a frame cannot be decoded", path_.string());
+    fail_in(path_, "a frame cannot be decoded");
   return pixels;
 }
 

@@ -31,8 +31,8 @@ void measure_frames(Clip& clip, ChosenFrames& found, const ProgressSink& sink) {
     const cv::Mat3b frame = clip.frame();
     if (found.frames.empty()) found.size = frame.size();
     if (frame.size() != found.size)
-      fail("{}: frame {} has {} x {} pixels, but the first one has {} x {}", found.clip.string(),
-           found.frames.size(), frame.cols, frame.rows, found.size.width, found.size.height);
+      fail_in(found.clip, "frame {} has {} x {} pixels, but the first one has {} x {}",
+              found.frames.size(), frame.cols, frame.rows, found.size.width, found.size.height);
     found.frames.push_back(meter.measure(frame));
     if (sink && found.frames.size() < clip.stated_count())
       sink(found.frames.size(), clip.stated_count());
@@ -40,31 +40,31 @@ void measure_frames(Clip& clip, ChosenFrames& found, const ProgressSink& sink) {
   if (sink) sink(found.frames.size(), found.frames.size());
 }
 
-void check_count(const ChosenFrames& found, double share, const std::string& setting) {
+void check_count(const ChosenFrames& found, double share) {
   if (found.chosen.size() >= kLeastFrames) return;
   const bool moves = found.chosen.size() > 1;
-  fail("{}: {} of {} frames can serve as photographs, at least {} are needed: {} ({} {})",
-       found.clip.string(), found.chosen.size(), found.frames.size(), kLeastFrames,
-       moves ? "the picture moves too little"
-             : "the picture does not move, or nothing in it can be tracked",
-       setting, share);
+  fail_in(found.clip,
+          "{} of {} frames can serve as photographs, at least {} are needed: {} ({} {})",
+          found.chosen.size(), found.frames.size(), kLeastFrames,
+          moves ? "the picture moves too little"
+                : "the picture does not move, or nothing in it can be tracked",
+          setting("share"), share);
 }
 
 }  // namespace
 
-ChosenFrames choose_in_clip(const fs::path& path, double share, const std::string& setting,
-                            const ProgressSink& sink) {
+ChosenFrames choose_in_clip(const fs::path& path, double share, const ProgressSink& sink) {
   Clip clip(path);
   ChosenFrames found{path, {}, clip.frames_per_second(), {}, {}};
   measure_frames(clip, found, sink);
-  if (found.frames.empty()) fail("{}: no frame can be decoded", path.string());
+  if (found.frames.empty()) fail_in(path, "no frame can be decoded");
   if (static_cast<double>(found.frames.size()) <
       kWholeClip * static_cast<double>(clip.stated_count()))
     log_warning("{}: ends after {} of {} frames; copy it again", path.string(), found.frames.size(),
                 clip.stated_count());
   found.chosen =
       choose_frames(found.frames, {share, found.frames_per_second, aspect_of(found.size)});
-  check_count(found, share, setting);
+  check_count(found, share);
   return found;
 }
 
@@ -88,7 +88,7 @@ void write_frames(const ChosenFrames& found, const fs::path& folder, int quality
   std::size_t at = 0;  // the number of frames read
   for (const std::size_t i : found.chosen) {
     while (at <= i) {
-      if (!clip.next()) fail("{}: frame {} cannot be read again", found.clip.string(), at);
+      if (!clip.next()) fail_in(found.clip, "frame {} cannot be read again", at);
       ++at;
     }
     if (quality < 0)

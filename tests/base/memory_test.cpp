@@ -115,20 +115,20 @@ TEST(AllocatedMemory, CountsWhatIsHeldAndNothingElse) {
 
 TEST(MemoryBudget, OfAProgramCountsAtLeastTheProgramItself) {
   constexpr std::uint64_t kProgram = 1'000'000 * kMegabyte;  // more than this process uses
-  const auto budget = MemoryBudget::of_program(1'000'010, "--limit", kProgram);
+  const auto budget = MemoryBudget::of_program(1'000'010, kProgram);
   EXPECT_EQ(budget.left(), 10 * kMegabyte);
   EXPECT_NO_THROW(budget.require(10 * kMegabyte, "reading a.ply"));
   EXPECT_EQ(test::error_of([&] { budget.require(10 * kMegabyte + 1, "reading a.ply"); }),
-            "--limit: 1000010 MB are too little, reading a.ply needs 1000011 MB");
-  EXPECT_EQ(MemoryBudget::of_program(999'999, "--limit", kProgram).left(), 0u);
+            "max_memory: 1000010 MB are too little, reading a.ply needs 1000011 MB");
+  EXPECT_EQ(MemoryBudget::of_program(999'999, kProgram).left(), 0u);
 }
 
 TEST(MemoryBudget, OfAProgramCountsWhatTheProcessUses) {
-  const auto tiny = MemoryBudget::of_program(1, "--limit", 0);  // less than this process uses
+  const auto tiny = MemoryBudget::of_program(1, 0);  // less than this process uses
   EXPECT_EQ(tiny.left(), 0u);
   EXPECT_THROW(tiny.require(0, "work"), Error);
   const std::uint64_t used = resident_memory();
-  const auto budget = MemoryBudget::of_program(used / kMegabyte + 100, "--limit", 0);
+  const auto budget = MemoryBudget::of_program(used / kMegabyte + 100, 0);
   constexpr std::uint64_t kSlack = 20 * kMegabyte;  // what the process uses changes a little
   EXPECT_NEAR(static_cast<double>(budget.left()), 100.0 * kMegabyte, static_cast<double>(kSlack));
   EXPECT_NO_THROW(budget.require(100 * kMegabyte - kSlack, "work"));
@@ -136,7 +136,7 @@ TEST(MemoryBudget, OfAProgramCountsWhatTheProcessUses) {
 }
 
 TEST(MemoryBudget, CountsReservationsWhileTheyLive) {
-  const auto budget = MemoryBudget::of_bytes(10 * kMegabyte, "limit");
+  const auto budget = MemoryBudget::of_bytes(10 * kMegabyte);
   const MemoryBudget copy = budget.with_advice("; use less");
   {
     const auto first = budget.reserve(4 * kMegabyte, "a list");
@@ -146,7 +146,7 @@ TEST(MemoryBudget, CountsReservationsWhileTheyLive) {
     EXPECT_EQ(copy.share().items(2 * kMegabyte, 9, "work"), 2u);
     EXPECT_EQ(copy.items(1, 9, "work"), 9u);
     EXPECT_EQ(test::error_of([&] { copy.require(6 * kMegabyte, "a tree"); }),
-              "limit: a tree needs 2 MB more; use less");
+              "max_memory: a tree needs 2 MB more; use less");
     const auto more = budget.reserve(9 * kMegabyte);
     EXPECT_EQ(budget.left(), 0u);
   }
@@ -154,7 +154,7 @@ TEST(MemoryBudget, CountsReservationsWhileTheyLive) {
 }
 
 TEST(MemoryBudget, AShareDoesNotCountTheProcess) {
-  const auto whole = MemoryBudget::of_program(1'000'010, "limit", 1'000'000 * kMegabyte);
+  const auto whole = MemoryBudget::of_program(1'000'010, 1'000'000 * kMegabyte);
   const auto taken = whole.reserve(4 * kMegabyte);
   const MemoryBudget share = whole.share();
   EXPECT_EQ(share.left(), 6 * kMegabyte);

@@ -8,21 +8,22 @@
 namespace axial {
 namespace {
 
-std::string named(const std::string& message) {
-  return test::error_of([&] { naming("a.ply", [&] { fail("{}", message); }); });
+template <class Work>
+std::string named(const Work& work) {
+  return test::bracketed_error_of([&] { naming("a.ply", work); });
 }
 
 TEST(Naming, AddsTheFileToMessagesWithoutAFile) {
-  EXPECT_EQ(named("face 3 is wrong"), "a.ply: face 3 is wrong");
-  EXPECT_EQ(named("--up: is wrong"), "--up: is wrong");
-  EXPECT_EQ(named("/b.jpg: is damaged"), "/b.jpg: is damaged");
+  EXPECT_EQ(named([] { fail("face 3 is wrong"); }), "a.ply: face 3 is wrong");
+  EXPECT_EQ(named([] { fail("too large: give a smaller {}", setting("pixel")); }),
+            "a.ply: too large: give a smaller <pixel>");
+  EXPECT_EQ(naming("a.ply", [] { return 3; }), 3);
 }
 
-TEST(Naming, KeepsMessagesThatNameTheirFile) {
-  const auto load = [] { fail("b.jpg: is damaged"); };
-  EXPECT_EQ(test::error_of([&] { naming("a.ply", [&] { already_named(load); }); }),
-            "b.jpg: is damaged");
-  EXPECT_EQ(already_named([] { return 3; }), 3);
+TEST(Naming, KeepsMessagesThatBeginWithAFileOrASetting) {
+  EXPECT_EQ(named([] { fail_in("b.jpg", "is damaged"); }), "b.jpg: is damaged");
+  EXPECT_EQ(named([] { naming("c.ply", [] { fail("is damaged"); }); }), "c.ply: is damaged");
+  EXPECT_EQ(named([] { fail("{} 1,2: is wrong", setting("up")); }), "<up> 1,2: is wrong");
 }
 
 }  // namespace

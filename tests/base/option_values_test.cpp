@@ -147,12 +147,13 @@ TEST(OptionValues, OptionsWithoutEffectAreNamedInOneWarning) {
 
 TEST(OptionValues, SettingsAreNamedByTheirOptions) {
   Values values;
-  const ParsedOptions parsed = parse(values, {"--scene", "/a.mvs"});
-  EXPECT_EQ(parsed.option_of("max_views"), "--max-views");
-  EXPECT_EQ(parsed.option_of("views"), "--max-views");
-  EXPECT_EQ(parsed.option_of("mode is slow"), "--mode slow");
-  EXPECT_EQ(parsed.option_of("working_folder"), "--working-folder");
-  EXPECT_EQ(parsed.option_of("no_option"), "no_option");
+  const LogCapture log;
+  parse(values, {"--scene", "/a.mvs"});
+  EXPECT_EQ(log_words(setting("max_views")), "--max-views");
+  EXPECT_EQ(log_words(setting("views")), "--max-views");
+  EXPECT_EQ(log_words(setting("mode is slow")), "--mode slow");
+  EXPECT_EQ(log_words(setting("working_folder")), "--working-folder");
+  EXPECT_EQ(log_words(setting("no_option")), "no_option");
 }
 
 }  // namespace

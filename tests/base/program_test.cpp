@@ -290,6 +290,12 @@ TEST_F(ProgramTest, TurnsExceptionsIntoOneLineAndExitCode1) {
   EXPECT_EQ(err_, "TestProgram: two lines\n");
   EXPECT_EQ(run([]() -> int { throw std::bad_alloc(); }), 1);
   EXPECT_EQ(err_, "TestProgram: out of memory\n");
+  EXPECT_EQ(run([]() -> int {
+              name_settings({{"max_memory", "--max-memory"}});
+              fail("{}: too little", setting("max_memory"));
+            }),
+            1);
+  EXPECT_EQ(err_, "TestProgram: --max-memory: too little\n");
   EXPECT_EQ(run([] {
               log_info("hello");
               return 0;

@@ -16,9 +16,8 @@ namespace {
 
 std::string refusal(const std::function<void(Options&)>& change) {
   Options options;
-  options.survey.files.name_of = [](std::string_view name) { return fmt::format("<{}>", name); };
   change(options);
-  return test::error_of([&] { check(options); });
+  return test::bracketed_error_of([&] { check(options); });
 }
 
 TEST(CheckOptions, RefusesContradictions) {

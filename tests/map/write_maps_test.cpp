@@ -199,7 +199,7 @@ TEST(WriteMaps, OldFilesStayIfMemoryDoesNotSuffice) {
   write_atomically(files.heights, "old");
   EXPECT_THAT(test::error_of([&] {
                 write_maps(files, room.content, {.contour_interval = 0.15},
-                           Context({}, {}, {MemoryBudget::of_program(1, "memory")}));
+                           Context({}, {}, {MemoryBudget::of_program(1)}));
               }),
               testing::HasSubstr("memory"));
   EXPECT_EQ(read_file(files.heights), "old");

@@ -34,7 +34,7 @@ TEST(StraightTransectInDegrees, IsReportedAsUnusedIfNoLineStatesTheOrder) {
     return apps::add_known("positions:known.txt", {0.01, true}, folder, bundle, adjust, unused);
   };
   UnusedInput unused(false), allowed(true);
-  EXPECT_THAT(test::error_of([&] { add(unused); }), HasSubstr("--allow-missing"));
+  EXPECT_THAT(test::error_of([&] { add(unused); }), HasSubstr("allow_missing"));
   EXPECT_THAT(add(allowed), IsEmpty());
   ASSERT_THAT(allowed.lines(), SizeIs(1));
   EXPECT_THAT(allowed.lines()[0], HasSubstr("known.txt: "));

@@ -110,14 +110,14 @@ TEST(Refine, TheResultDoesNotDependOnThreadsAndMemory) {
   const ThreadLimit limit(2);
   // Enough for the images of the vertices of two views, of six.
   const Sizes sizes{one.vertices.size(), one.faces.size(), scene.views.size(), 200 * 150};
-  const auto little = MemoryBudget::of_bytes(bytes_needed(sizes, 2), "the limit");
+  const auto little = MemoryBudget::of_bytes(bytes_needed(sizes, 2));
   ASSERT_EQ(views_to_keep(sizes, {}, little), 2u);
   ASSERT_GT(sizes.views, 2u);
   scene.refine(two, {}, Context({}, {}, {little}));
   EXPECT_TRUE(one.vertices == two.vertices);
-  const Context less({}, {}, {MemoryBudget::of_bytes(1'000'000, "the limit")});
+  const Context less({}, {}, {MemoryBudget::of_bytes(1'000'000)});
   EXPECT_THAT(test::error_of([&] { scene.refine(two, {}, less); }),
-              testing::StartsWith("the limit: refining a mesh of 5476 vertices needs "));
+              testing::StartsWith("max_memory: refining a mesh of 5476 vertices needs "));
 }
 
 TEST(Refine, EveryChoiceOfReferencesReducesNoise) {

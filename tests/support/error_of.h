@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "base/error.h"
@@ -17,6 +18,22 @@ std::string error_of(Run run) {
     run();
   } catch (const Error& error) {
     return error.what();
+  }
+  ADD_FAILURE() << "no Error";
+  return {};
+}
+
+// The same, with each setting of the message in angle brackets: "<max_memory>: ...".
+template <class Run>
+std::string bracketed_error_of(Run run) {
+  const std::string marks = setting("");
+  try {
+    run();
+  } catch (const Error& error) {
+    std::string text = error.text();
+    std::ranges::replace(text, marks[0], '<');
+    std::ranges::replace(text, marks[1], '>');
+    return text;
   }
   ADD_FAILURE() << "no Error";
   return {};

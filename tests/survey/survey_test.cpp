@@ -70,9 +70,9 @@ TEST_F(SurveyTest, NoInputIsOverwritten) {
 }
 
 TEST_F(SurveyTest, TooLittleMemoryIsAnErrorUnlessThereIsNoLimit) {
-  const Context context({}, {}, {MemoryBudget::of_program(1, "limit")});
+  const Context context({}, {}, {MemoryBudget::of_program(1)});
   EXPECT_THAT(test::error_of([&] { open_scene(options_, context); }),
-              AllOf(HasSubstr("limit"), HasSubstr("scene.mvs")));
+              AllOf(HasSubstr("max_memory"), HasSubstr("scene.mvs")));
   EXPECT_EQ(opened().views.size(), 2u);
 }
 

@@ -187,21 +187,19 @@ TEST(TextureMesh, LargeChartsAreScaledDown) {
 TEST(TextureMesh, ALimitOnMemoryIsKeptOrRefusedInOneLine) {
   const test::Room room = test::photograph_room(4);
   const TexturedMesh free = texture_mesh(test::room_mesh(), room.views, room.source());
-  Options options;
-  options.name_of = [](std::string_view) { return std::string("number of tiles"); };
   std::set<std::string> works;
   std::optional<TexturedMesh> limited;
   std::uint64_t most = 10'000;
   for (; !limited; most += most / 3) {
     try {
-      limited = texture_mesh(test::room_mesh(), room.views, room.source(), options, nullptr,
-                             Context({}, {}, {MemoryBudget::of_bytes(most, "the limit")}));
+      limited = texture_mesh(test::room_mesh(), room.views, room.source(), {}, nullptr,
+                             Context({}, {}, {MemoryBudget::of_bytes(most)}));
       break;
     } catch (const Error& error) {
       const std::string said = error.what();
-      EXPECT_THAT(said, testing::MatchesRegex("the limit: [^\n]+ needs [0-9]+ MB more"
-                                              "(; a larger number of tiles needs less memory)?"));
-      works.insert(said.substr(0, 22));
+      EXPECT_THAT(said, testing::MatchesRegex("max_memory: [^\n]+ needs [0-9]+ MB more"
+                                              "(; a larger tiles needs less memory)?"));
+      works.insert(said.substr(0, 23));
     }
   }
   EXPECT_GT(works.size(), 2u);  // stages

@@ -34,7 +34,7 @@ void write_byte_arrays(const Artifact& artifact,
     }
     out << print.hex();
     out.close();
-    if (!out) fail("{}: cannot be written", temporary.string());
+    if (!out) fail_in(temporary, "cannot be written");
   });
 }
 

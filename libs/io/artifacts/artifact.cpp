@@ -74,7 +74,7 @@ std::string print_of_file(const fs::path& file) {
     in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
     print.add(std::string_view(piece).substr(0, static_cast<std::size_t>(in.gcount())));
   }
-  if (!in.eof()) fail("{}: cannot be read", file.string());
+  if (!in.eof()) fail_in(file, "cannot be read");
   return print.hex();
 }
 

@@ -55,7 +55,7 @@ Json parse_json(std::string_view text, const std::string& name) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    fail("{}: malformed JSON: {}", name, error.what());
+    fail_in(name, "malformed JSON: {}", error.what());
   }
 }
 
@@ -64,7 +64,7 @@ void write_json(const std::filesystem::path& path, const Json& value) {
   try {
     write_atomically(path, value.dump(2) + "\n");
   } catch (const Json::exception& error) {
-    fail("{}: cannot be written: {}", path.string(), error.what());
+    fail_in(path, "cannot be written: {}", error.what());
   }
 }
 

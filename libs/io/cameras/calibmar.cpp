@@ -39,21 +39,20 @@ class YamlKeys {
     if (!text.ends_with('\n')) text += '\n';  // some writers omit the last newline
     TextReader reader(text, file_);
     while (const auto line = reader.line()) add(without_comment(line->rest()), line->where());
-    if (open_) fail("{}: the list of {} has no end: the file is truncated", file_, key_);
+    if (open_) fail_in(file_, "the list of {} has no end: the file is truncated", key_);
   }
 
   bool has(const std::string& key) const { return values_.contains(key); }
 
   const Words& words(const std::string& key) const {
     const auto found = values_.find(key);
-    if (found == values_.end()) fail("{}: key '{}' is missing", file_, key);
+    if (found == values_.end()) fail_in(file_, "key '{}' is missing", key);
     return found->second;
   }
 
   std::string word(const std::string& key) const {
     const Words& all = words(key);
-    if (all.size() != 1)
-      fail("{}: {} is [{}], expected one word", file_, key, fmt::join(all, ", "));
+    if (all.size() != 1) fail_in(file_, "{} is [{}], expected one word", key, fmt::join(all, ", "));
     return all.front();
   }
 
@@ -62,7 +61,7 @@ class YamlKeys {
     std::vector<T> result;
     for (const std::string& text : words(key)) {
       const auto value = parse_finite<T>(text);
-      if (!value) fail("{}: {} has '{}', which is not a valid number", file_, key, text);
+      if (!value) fail_in(file_, "{} has '{}', which is not a valid number", key, text);
       result.push_back(*value);
     }
     return result;
@@ -71,7 +70,7 @@ class YamlKeys {
   template <class T>
   T number(const std::string& key) const {
     const std::vector<T> all = numbers<T>(key);
-    if (all.size() != 1) fail("{}: {} has {} numbers, expected one", file_, key, all.size());
+    if (all.size() != 1) fail_in(file_, "{} has {} numbers, expected one", key, all.size());
     return all.front();
   }
 
@@ -83,9 +82,9 @@ class YamlKeys {
     if (line.front() == '-' && !key_.empty() && (line.size() == 1 || line[1] == ' '))
       return add_word(line.substr(1));
     const std::size_t colon = line.find(':');
-    if (colon == std::string_view::npos) fail("{}: '{}' is not 'key: value'", where, line);
+    if (colon == std::string_view::npos) fail_in(where, "'{}' is not 'key: value'", line);
     key_ = unquoted(trimmed(line.substr(0, colon)));
-    if (!values_.try_emplace(key_).second) fail("{}: key '{}' occurs twice", where, key_);
+    if (!values_.try_emplace(key_).second) fail_in(where, "key '{}' occurs twice", key_);
     const std::string_view value = trimmed(line.substr(colon + 1));
     if (!value.starts_with('[')) return add_word(value);
     open_ = true;
@@ -96,8 +95,7 @@ class YamlKeys {
     const std::size_t end = text.find(']');
     if (end != std::string_view::npos) {
       if (!trimmed(text.substr(end + 1)).empty())
-        fail("{}: unexpected '{}' after the list of {}", where, trimmed(text.substr(end + 1)),
-             key_);
+        fail_in(where, "unexpected '{}' after the list of {}", trimmed(text.substr(end + 1)), key_);
       open_ = false;
       text = text.substr(0, end);
     }
@@ -122,10 +120,10 @@ refractive::Port<double> read_port(const YamlKeys& yaml, const std::string& file
   const std::string word = yaml.word("non_svp_model");
   if (!is_port_word(
           word))  // before its numbers: an unknown kind of port may have another number of them
-    fail("{}: non_svp_model: the port '{}' is not FLATPORT, DOMEPORT or NONE", file, word);
+    fail_in(file, "non_svp_model: the port '{}' is not FLATPORT, DOMEPORT or NONE", word);
   const std::vector<double> values = yaml.numbers<double>("non_svp_parameters");
   if (values.size() != kPortNumbers)
-    fail("{}: non_svp_parameters has {} numbers, expected {}", file, values.size(), kPortNumbers);
+    fail_in(file, "non_svp_parameters has {} numbers, expected {}", values.size(), kPortNumbers);
   PortNumbers numbers;
   std::copy(values.begin(), values.end(), numbers.begin());
   return port_from(word, numbers, file + ": non_svp_parameters");

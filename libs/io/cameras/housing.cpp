@@ -42,7 +42,7 @@ void read_port(const std::string& name, const JsonPlace& place, Housing& housing
 void read_ports(const JsonPlace& place, Housing& housing) {
   for (const std::string& name : place.keys()) {
     if (name == kNone || name.empty())
-      fail("{}: '{}' cannot be the name of a port ('none' means no port)", place.where, name);
+      fail_in(place.where, "'{}' cannot be the name of a port ('none' means no port)", name);
     read_port(name, place.at(name), housing);
   }
 }
@@ -50,8 +50,8 @@ void read_ports(const JsonPlace& place, Housing& housing) {
 void read_cameras(const JsonPlace& place, Housing& housing) {
   for (const std::string& key : place.keys()) {
     const auto id = parse_number<std::uint32_t>(key);
-    if (!id) fail("{}: key '{}' is not a COLMAP camera id", place.where, key);
-    if (housing.cameras.contains(*id)) fail("{}: camera {} occurs twice", place.where, *id);
+    if (!id) fail_in(place.where, "key '{}' is not a COLMAP camera id", key);
+    if (housing.cameras.contains(*id)) fail_in(place.where, "camera {} occurs twice", *id);
     housing.cameras[*id] = defined_name(place, key, housing.ports, "port");
   }
 }
@@ -79,7 +79,7 @@ using Port = refractive::Port<double>;
 Housing calibmar_housing(const fs::path& path) {
   const ColmapCamera camera = read_calibmar(path);
   if (!camera.port && says_no_port(path)) return {};
-  if (!camera.port) fail("{}: key 'non_svp_model' is missing", path.string());
+  if (!camera.port) fail_in(path, "key 'non_svp_model' is missing");
   return housing_with(to_housing_port(*camera.port));
 }
 
@@ -146,8 +146,9 @@ void check_port(const HousingPort& port, const std::string& where) {
 void refuse_water_surfaces(const Housing& housing, const fs::path& file) {
   for (const auto& [name, port] : housing.ports)
     if (std::holds_alternative<WaterSurface>(port))
-      fail("{}: housing.ports.{} is a water surface, expected ports that are fixed to the camera",
-           file.string(), name);
+      fail_in(file,
+              "housing.ports.{} is a water surface, expected ports that are fixed to the camera",
+              name);
 }
 
 namespace {
@@ -189,7 +190,7 @@ void write_housing(const fs::path& path, const Housing& housing) {
   }
   const auto checked = [&](const std::string& name) {
     if (name != kNone && !housing.ports.contains(name))
-      fail("{}: port '{}' is not defined", where, name);
+      fail_in(where, "port '{}' is not defined", name);
     return name;
   };
   checked(housing.default_port);
@@ -224,10 +225,10 @@ void attach_ports(Scene& scene, const Housing& housing, const std::string& file)
   for_each_entry(scene, housing.images, file, "housing.images", [&](SceneImage& image, auto entry) {
     const bool has_entry = entry != housing.images.end();
     if (!has_entry && !housing.cameras.empty())
-      fail(
-          "{}: housing.cameras names ports by COLMAP camera, which a scene does not contain: add "
-          "an entry for {} under housing.images (InterfaceCOLMAP writes these entries)",
-          file, image.path);
+      fail_in(file,
+              "housing.cameras names ports by COLMAP camera, which a scene does not contain: add "
+              "an entry for {} under housing.images (InterfaceCOLMAP writes these entries)",
+              image.path);
     attach(image, has_entry ? entry->second : housing.default_port, housing, file);
   });
   warn_of_ports_in_scene(scene, housing, file);

@@ -21,7 +21,7 @@ using Distortion = refractive::LensDistortion<double>;
 void read_definitions(const JsonPlace& place, SceneLenses& lenses) {
   for (const std::string& name : place.keys()) {
     if (name == kNone || name.empty())
-      fail("{}: '{}' cannot be the name of a lens ('none' means no distortion)", place.where, name);
+      fail_in(place.where, "'{}' cannot be the name of a lens ('none' means no distortion)", name);
     lenses.lenses[name] = distortion_from_json(place.at(name));
   }
 }
@@ -64,10 +64,10 @@ void check_names(const SceneLenses& lenses, const Scene& scene, const fs::path& 
     const std::optional<Distortion> read =
         name == kNone ? std::nullopt : std::optional(lenses.lenses.at(name));
     if (read != image.camera.distortion)
-      fail(
-          "{}: images: the end of the path of {} matches another image, with lens '{}': rename a "
-          "folder",
-          file.string(), path, name);
+      fail_in(file,
+              "images: the end of the path of {} matches another image, with lens '{}': rename a "
+              "folder",
+              path, name);
   }
 }
 
@@ -126,8 +126,8 @@ void attach_lenses(Scene& scene, const SceneLenses& lenses, const fs::path& file
                    if (name == kNone) return;
                    image.camera.distortion = lenses.lenses.at(name);
                    if (!images_anything(image.camera))
-                     fail("{}: lenses.{}: is not a valid lens for {}: it mirrors the image",
-                          file.string(), name, image.path);
+                     fail_in(file, "lenses.{}: is not a valid lens for {}: it mirrors the image",
+                             name, image.path);
                  });
 }
 

@@ -85,7 +85,7 @@ void warn_of_housing_beside(const Scene& scene, const fs::path& scene_path, cons
     other = read_housing(beside, PortValues::passed_over);
   } catch (const Error& unreadable) {
     return log_warning("{}: is not used ({} is used instead), and cannot be read: {}",
-                       beside.string(), file.string(), unreadable.what());
+                       beside.string(), file.string(), unreadable.text());
   }
   for (const SceneImage& image : scene.images)
     if (!same(port_by_path(taken, image.path), port_by_path(other, image.path)))

@@ -18,16 +18,16 @@ PhotographTimes read_photograph_times(const std::filesystem::path& file) {
     const bool header = std::exchange(first, false) && row == "name,seconds";
     if (header) continue;
     const std::size_t comma = row.rfind(',');
-    if (comma == std::string_view::npos) fail("{}: '{}' is not NAME,SECONDS", line->where(), row);
+    if (comma == std::string_view::npos) fail_in(line->where(), "'{}' is not NAME,SECONDS", row);
     const std::string name(trimmed(row.substr(0, comma)));
     const std::string_view number = trimmed(row.substr(comma + 1));
     const auto seconds = parse_finite<double>(number);
-    if (name.empty()) fail("{}: the name is missing", line->where());
-    if (!seconds) fail("{}: seconds are '{}', which is not a valid number", line->where(), number);
+    if (name.empty()) fail_in(line->where(), "the name is missing");
+    if (!seconds) fail_in(line->where(), "seconds are '{}', which is not a valid number", number);
     if (!times.emplace(name, *seconds).second)
-      fail("{}: the photograph '{}' occurs twice", line->where(), name);
+      fail_in(line->where(), "the photograph '{}' occurs twice", name);
   }
-  if (times.empty()) fail("{}: contains no photograph", file.string());
+  if (times.empty()) fail_in(file, "contains no photograph");
   return times;
 }
 

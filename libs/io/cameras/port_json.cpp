@@ -129,12 +129,12 @@ bool JsonPlace::has(const char* key) const {
 
 void JsonPlace::require_object(std::initializer_list<const char*> known) const {
   for (const std::string& key : keys())
-    if (std::ranges::find(known, key) == known.end()) fail("{}: unknown key '{}'", where, key);
+    if (std::ranges::find(known, key) == known.end()) fail_in(where, "unknown key '{}'", key);
 }
 
 JsonPlace JsonPlace::at(const std::string& key) const {
   const auto found = json.find(key);
-  if (found == json.end()) fail("{}: key '{}' is missing", where, key);
+  if (found == json.end()) fail_in(where, "key '{}' is missing", key);
   return {*found, fmt::format("{}.{}", where, key)};
 }
 

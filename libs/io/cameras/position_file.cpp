@@ -50,18 +50,17 @@ std::vector<Eigen::Vector3d> places_of(const Rows& found) {
 DegreeOrder stated_order(std::span<const Eigen::Vector3d> places, bool longitude_first,
                          const std::string& file) {
   const std::vector<DegreeOrder> orders = possible_orders(places, longitude_first);
-  if (orders.size() > 1) fail("{}: {}", file, kUnknownOrder);
+  if (orders.size() > 1) fail_in(file, "{}", kUnknownOrder);
   if (orders.empty())
-    fail(
-        "{}: the positions are degrees, but some are beyond the longitudes and latitudes of the "
-        "Earth",
-        file);
+    fail_in(file,
+            "the positions are degrees, but some are beyond the longitudes and latitudes of the "
+            "Earth");
   return orders.front();
 }
 
 PositionReading read_stated_degrees(const Rows& found, const std::string& file) {
   if (!found.layout.other_datum.empty())
-    fail("{}: the positions are degrees ({}); {}", file, found.layout.other_datum, kProjectRemedy);
+    fail_in(file, "the positions are degrees ({}); {}", found.layout.other_datum, kProjectRemedy);
   const std::vector<Eigen::Vector3d> places = places_of(found);
   std::vector<int> lines;
   for (const PositionRow& row : found.rows) lines.push_back(row.line);
@@ -130,7 +129,7 @@ std::vector<std::string> split_list(std::string_view text, const std::string& wh
     std::string field;
     if (text.starts_with('"')) {
       const auto quoted = take_quoted(text);
-      if (!quoted) fail("{}: a quote is not closed", where);
+      if (!quoted) fail_in(where, "a quote is not closed");
       field = *quoted;
     }
     const std::size_t comma = std::min(text.find(','), text.size());

@@ -81,8 +81,8 @@ bool read_header(std::string_view text, const std::string& where, PositionLayout
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (!is_coordinate((*columns)[i])) continue;
       if (!is_known_unit(names[i].unit))
-        fail("{}: column '{}' is in '{}', but positions must be in metres", where, names[i].words,
-             names[i].unit);
+        fail_in(where, "column '{}' is in '{}', but positions must be in metres", names[i].words,
+                names[i].unit);
       degrees |= means_degrees(names[i]);
       metres |= means_metres(names[i]) && is_plane((*columns)[i]);
       layout.longitude_first |= names_degrees(names[i].words);
@@ -99,8 +99,8 @@ bool read_header(std::string_view text, const std::string& where, PositionLayout
 void refuse_feet(const std::string& text, const std::string& where) {
   for (const char* word : {"foot", "feet", "+units=ft", "+units=us-ft", "us-ft", "+to_meter"})
     if (contains(text, word))
-      fail("{}: the unit of the coordinates is not the metre; convert the positions to metres",
-           where);
+      fail_in(where,
+              "the unit of the coordinates is not the metre; convert the positions to metres");
 }
 
 void set_degrees(std::string_view name, bool like_wgs84, PositionLayout& layout) {

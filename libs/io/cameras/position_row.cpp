@@ -26,8 +26,8 @@ std::string_view take_last_token(std::string_view& text) {
 
 double finite(std::string_view field, const std::string& where) {
   const std::optional<double> value = number_in(field);
-  if (!value) fail("{}: '{}' is not a number", where, field);
-  if (!std::isfinite(*value)) fail("{}: '{}' is not finite", where, field);
+  if (!value) fail_in(where, "'{}' is not a number", field);
+  if (!std::isfinite(*value)) fail_in(where, "'{}' is not finite", field);
   return *value;
 }
 
@@ -45,10 +45,10 @@ PositionRow row_of(std::string name, std::span<const std::string> fields,
   for (std::size_t i = 0; i < 3; ++i)
     row.position[static_cast<Eigen::Index>(i)] = finite(fields[i], where);
   if (fields.size() == 4 || fields.size() == 7)
-    fail(
-        "{}: must be NAME X Y Z, but {} numbers follow the name; say what they are in a first line "
-        "such as label,x,y,z,accuracy",
-        where, fields.size());
+    fail_in(where,
+            "must be NAME X Y Z, but {} numbers follow the name; say what they are in a first line "
+            "such as label,x,y,z,accuracy",
+            fields.size());
   const std::size_t first = fields.size() == 5 ? 3 : fields.size() >= 8 ? 6 : 0;
   if (first == 0) return row;
   row.sigma = sigma_of(finite(fields[first], where), finite(fields[first + 1], where));
@@ -156,10 +156,9 @@ void refuse_decimal_commas(const Fields& fields, const std::string& where) {
     return parse_number<long long>(field).has_value();
   };
   if (fields.size() == 7 && std::all_of(fields.begin() + 1, fields.end(), is_whole))
-    fail(
-        "{}: commas separate the fields and may be decimal marks, too; separate the fields by "
-        "semicolons",
-        where);
+    fail_in(where,
+            "commas separate the fields and may be decimal marks, too; separate the fields by "
+            "semicolons");
 }
 
 // Reads NAME;X;Y;Z without a header.
@@ -272,14 +271,14 @@ std::optional<PositionRow> read_by_header(std::string_view text, const PositionL
   if (is_comment(text)) return {};
   if (layout.delimiter == 0) return read_words_by_header(text, layout.columns, is_image, where);
   auto fields = split_fields(text, layout.delimiter);
-  if (!fields) fail("{}: a quote is not closed", where);
+  if (!fields) fail_in(where, "a quote is not closed");
   while (fields->size() > layout.columns.size() && fields->back().empty()) fields->pop_back();
   if (fields->size() > layout.columns.size())
-    fail("{}: has {} fields, but the header names {} columns", where, fields->size(),
-         layout.columns.size());
+    fail_in(where, "has {} fields, but the header names {} columns", fields->size(),
+            layout.columns.size());
   if (all_empty(*fields)) return {};
   auto row = row_by_header(*fields, layout.columns, where);
-  if (!row) fail("{}: has no label", where);
+  if (!row) fail_in(where, "has no label");
   return row;
 }
 
@@ -316,11 +315,10 @@ std::optional<PositionRow> read_any(std::string_view text, const PositionLayout&
   if (delimited && (!reading || is_image(delimited->name))) return delimited;
   if (reading) return unknown_row(text, *reading, where);
   if (is_pose_of_colmap(text))
-    fail(
-        "{}: is a line of COLMAP's images.txt, which has no camera centres; AlignModel takes a "
-        "model as its reference",
-        where);
-  fail("{}: must be NAME X Y Z", where);
+    fail_in(where,
+            "is a line of COLMAP's images.txt, which has no camera centres; AlignModel takes a "
+            "model as its reference");
+  fail_in(where, "must be NAME X Y Z");
 }
 
 }  // namespace

@@ -64,12 +64,13 @@ ChosenUnit choose_unit(const PositionFile& read, std::span<const std::size_t> ro
             fmt::format("no line states the unit of the positions; they fit the cameras as {} ({})",
                         best.unit, fits)};
   if (best.as_degrees && second.as_degrees && best.misfit <= clear * candidates[2].misfit)
-    throw UnclearUnit(fmt::format("{}: {}", file, kUnknownOrder));
-  throw UnclearUnit(fmt::format(
+    throw UnclearUnit(fmt::format("{}: {}", file, kUnknownOrder), file);
+  const std::string text = fmt::format(
       "{}: no line states whether the positions are metres or degrees, and they fit the cameras "
       "about equally well ({}); name the columns in a first line such as label,x (m),y (m),z (m) "
       "or label,longitude,latitude,altitude",
-      file, fits));
+      file, fits);
+  throw UnclearUnit(text, file);
 }
 
 }  // namespace axial::io

@@ -64,7 +64,7 @@ Column accuracy(std::string_view words) {
 std::string read_table_text(const std::filesystem::path& file) {
   std::string text = read_file(file);
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
-    fail("{}: is UTF-16; save it as UTF-8", file.string());
+    fail_in(file, "is UTF-16; save it as UTF-8");
   if (text.find('\n') == std::string::npos) std::ranges::replace(text, '\r', '\n');
   if (!text.ends_with('\n')) text += '\n';
   return text;

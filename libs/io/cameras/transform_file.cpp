@@ -25,7 +25,7 @@ std::vector<double> numbers_in(std::string_view text, const std::string& file) {
     const std::string_view word = text.substr(0, text.find_first_of(kBlank));
     text.remove_prefix(word.size());
     const auto number = parse_number<double>(word);
-    if (number && !std::isfinite(*number)) fail("{}: contains {}", file, word);
+    if (number && !std::isfinite(*number)) fail_in(file, "contains {}", word);
     if (number) numbers.push_back(*number);
   }
 }
@@ -37,15 +37,15 @@ Similarity read_transform(const std::filesystem::path& path) {
   const std::string file = path.string(), bytes = read_file(path, kMostBytes);
   const std::vector<double> m = numbers_in(without_byte_order_mark(bytes), file);
   if (m.size() != 12 && m.size() != 16)
-    fail("{}: contains {} numbers, expected 12 or 16: the rows of a matrix", file, m.size());
+    fail_in(file, "contains {} numbers, expected 12 or 16: the rows of a matrix", m.size());
   if (m.size() == 16 && !(m[12] == 0 && m[13] == 0 && m[14] == 0 && m[15] == 1))
-    fail("{}: the last row is {} {} {} {}, expected 0 0 0 1", file, m[12], m[13], m[14], m[15]);
+    fail_in(file, "the last row is {} {} {} {}, expected 0 0 0 1", m[12], m[13], m[14], m[15]);
   Eigen::Matrix3d scaled;
   scaled << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
   Similarity result;
   result.scale = std::cbrt(scaled.determinant());
   if (!(result.scale > 0) || !std::isfinite(result.scale))
-    fail("{}: the matrix mirrors or flattens: it is not a rotation with a positive scale", file);
+    fail_in(file, "the matrix mirrors or flattens: it is not a rotation with a positive scale");
   result.rotation =
       checked_rotation(scaled / result.scale, file + ": the matrix, without its scale,");
   result.translation = {m[3], m[7], m[11]};

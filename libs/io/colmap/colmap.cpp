@@ -45,7 +45,7 @@ template <class T>
 void require_unique_ids(const std::vector<T>& items, const char* what, const std::string& model) {
   std::unordered_set<std::uint64_t> seen;
   for (const T& item : items)
-    if (!seen.insert(item.id).second) fail("{}: {} {} occurs twice", model, what, item.id);
+    if (!seen.insert(item.id).second) fail_in(model, "{} {} occurs twice", what, item.id);
 }
 
 // An image is identified by its normalised path relative to the image folder.
@@ -55,8 +55,8 @@ void require_unique_names(const ColmapModel& model, const std::string& where) {
     const std::string path = fs::path(image.name).lexically_normal().generic_string();
     const auto [other, added] = seen.emplace(path, image.id);
     if (!added)
-      fail("{}: images {} and {} have the same name, {}", where, other->second, image.id,
-           image.name);
+      fail_in(where, "images {} and {} have the same name, {}", other->second, image.id,
+              image.name);
   }
 }
 
@@ -68,23 +68,23 @@ void check_references(const ColmapModel& model, const std::string& where) {
   std::unordered_map<std::uint32_t, std::size_t> observations;
   for (const ColmapImage& image : model.images) {
     if (!cameras.contains(image.camera))
-      fail("{}: image {} ({}) refers to camera {}, which does not exist", where, image.id,
-           image.name, image.camera);
+      fail_in(where, "image {} ({}) refers to camera {}, which does not exist", image.id,
+              image.name, image.camera);
     for (const ColmapPoint2D& point : image.points)
       if (point.point3d != kNoPoint3D && !points.contains(point.point3d))
-        fail("{}: image {} ({}) refers to 3D point {}, which does not exist", where, image.id,
-             image.name, point.point3d);
+        fail_in(where, "image {} ({}) refers to 3D point {}, which does not exist", image.id,
+                image.name, point.point3d);
     observations[image.id] = image.points.size();
   }
   for (const ColmapPoint3D& point : model.points)
     for (const ColmapTrackElement& element : point.track) {
       const auto found = observations.find(element.image);
       if (found == observations.end())
-        fail("{}: 3D point {} refers to image {}, which does not exist", where, point.id,
-             element.image);
+        fail_in(where, "3D point {} refers to image {}, which does not exist", point.id,
+                element.image);
       if (element.point2d >= found->second)
-        fail("{}: 3D point {} refers to 2D point {} of image {}, which has {}", where, point.id,
-             element.point2d, element.image, found->second);
+        fail_in(where, "3D point {} refers to 2D point {} of image {}, which has {}", point.id,
+                element.point2d, element.image, found->second);
     }
 }
 
@@ -96,8 +96,8 @@ fs::path find_colmap_model(const fs::path& folder) {
   // If no model is complete, the reader's message says which files are missing.
   if (taken == places.end()) taken = std::ranges::find_if(places, has_cameras);
   if (taken == places.end())
-    fail("{}: no COLMAP model: no cameras.txt or cameras.bin in {}, {} or {}", folder.string(),
-         places[0].string(), places[1].string(), places[2].string());
+    fail_in(folder, "no COLMAP model: no cameras.txt or cameras.bin in {}, {} or {}",
+            places[0].string(), places[1].string(), places[2].string());
   if (const auto others = other_models(places, *taken); !others.empty())
     log_info("{}: this model is read; ignored: {}", taken->string(), fmt::join(others, ", "));
   return *taken;

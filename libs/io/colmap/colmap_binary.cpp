@@ -18,7 +18,7 @@ constexpr std::size_t kObservation = 8 + 8 + 8;
 constexpr std::size_t kTrackElement = 4 + 4;
 
 void require_finite(double value, const char* field, std::uint64_t id, const std::string& file) {
-  if (!std::isfinite(value)) fail("{}: {} of record {} is {}", file, field, id, value);
+  if (!std::isfinite(value)) fail_in(file, "{} of record {} is {}", field, id, value);
 }
 
 std::optional<refractive::Port<double>> parse_port(ByteReader& in, const ColmapCamera& camera) {
@@ -37,7 +37,7 @@ ColmapCamera parse_camera(ByteReader& in, Dialect dialect) {
   const auto model = in.read<std::int32_t>("camera model");
   camera.model = colmap_model_name(model, dialect);
   if (camera.model.empty())
-    fail("{}: camera {} has the unknown model number {}", in.file(), camera.id, model);
+    fail_in(in.file(), "camera {} has the unknown model number {}", camera.id, model);
   camera.width = in.read<std::uint64_t>("width");
   camera.height = in.read<std::uint64_t>("height");
   camera.params.resize(static_cast<std::size_t>(colmap_parameter_count(camera.model)));
@@ -55,7 +55,7 @@ ColmapImage parse_image(ByteReader& in) {
   image.pose = pose_from_colmap(pose, fmt::format("{}: image {}", in.file(), image.id));
   image.camera = in.read<std::uint32_t>("camera id");
   image.name = in.c_string("image name");
-  if (image.name.empty()) fail("{}: image {} has no name", in.file(), image.id);
+  if (image.name.empty()) fail_in(in.file(), "image {} has no name", image.id);
   image.points.resize(in.count(kObservation, "2D points"));
   for (ColmapPoint2D& point : image.points) {
     point.x = in.read<double>("x of a 2D point");
@@ -110,8 +110,8 @@ std::string cameras_as_bytes(const ColmapModel& model, const std::string& file, 
   for (const ColmapCamera& camera : model.cameras) {
     const int id = colmap_model_id(camera.model, dialect);
     if (id < 0)
-      fail("{}: camera {} has model '{}', which this binary format does not support", file,
-           camera.id, camera.model);
+      fail_in(file, "camera {} has model '{}', which this binary format does not support",
+              camera.id, camera.model);
     check_colmap_camera(camera, file);
     out.write(camera.id);
     out.write(static_cast<std::int32_t>(id));
@@ -132,7 +132,7 @@ std::string images_as_bytes(const ColmapModel& model, const std::string& file) {
   out.count(model.images.size());
   for (const ColmapImage& image : model.images) {
     if (image.name.empty() || image.name.find('\0') != std::string::npos)
-      fail("{}: image {} has an empty name or a name with a NUL", file, image.id);
+      fail_in(file, "image {} has an empty name or a name with a NUL", image.id);
     const ColmapPose pose = pose_to_colmap(image.pose);
     out.write(image.id);
     out.write(std::span(pose));

@@ -82,17 +82,17 @@ int colmap_focal_count(std::string_view name) {
 
 Pose pose_from_colmap(const ColmapPose& values, const std::string& where) {
   for (const double value : values)
-    if (!std::isfinite(value)) fail("{}: the pose contains {}", where, value);
+    if (!std::isfinite(value)) fail_in(where, "the pose contains {}", value);
   const Eigen::Vector4d q = Eigen::Vector4d(values[0], values[1], values[2], values[3]);
   const double norm = q.stableNorm();
   if (!(norm > 1e-6) || !std::isfinite(norm))
-    fail("{}: the quaternion {} {} {} {} is not a rotation", where, q[0], q[1], q[2], q[3]);
+    fail_in(where, "the quaternion {} {} {} {} is not a rotation", q[0], q[1], q[2], q[3]);
   const Eigen::Vector4d unit = q / norm;
   Pose pose;
   pose.rotation = rotation_from(unit[0], unit[1], unit[2], unit[3]);
   pose.centre = -pose.rotation.transpose() * Eigen::Vector3d(values[4], values[5], values[6]);
   if (!pose.centre.allFinite())
-    fail("{}: the translation {} {} {} is too long", where, values[4], values[5], values[6]);
+    fail_in(where, "the translation {} {} {} is too long", values[4], values[5], values[6]);
   return pose;
 }
 
@@ -124,20 +124,20 @@ ColmapPose pose_to_colmap(const Pose& pose) {
 void check_colmap_camera(const ColmapCamera& camera, const std::string& where) {
   constexpr std::uint64_t kLargestSide = 1'000'000;
   if (camera.width < 1 || camera.width > kLargestSide)
-    fail("{}: camera {} has width {}", where, camera.id, camera.width);
+    fail_in(where, "camera {} has width {}", camera.id, camera.width);
   if (camera.height < 1 || camera.height > kLargestSide)
-    fail("{}: camera {} has height {}", where, camera.id, camera.height);
+    fail_in(where, "camera {} has height {}", camera.id, camera.height);
   const Model* model = find_model(camera.model);
-  if (!model) fail("{}: camera {} has the unknown model '{}'", where, camera.id, camera.model);
+  if (!model) fail_in(where, "camera {} has the unknown model '{}'", camera.id, camera.model);
   const auto expected = static_cast<std::size_t>(model->parameters);
   if (camera.params.size() != expected)
-    fail("{}: camera {} ({}) has {} parameters, expected {}", where, camera.id, camera.model,
-         camera.params.size(), expected);
+    fail_in(where, "camera {} ({}) has {} parameters, expected {}", camera.id, camera.model,
+            camera.params.size(), expected);
   for (std::size_t i = 0; i < expected; ++i) {
     const bool focal = i < static_cast<std::size_t>(model->focal_lengths);
     if (!std::isfinite(camera.params[i]) || (focal && !(camera.params[i] > 0)))
-      fail("{}: camera {} ({}): parameter {} is {}", where, camera.id, camera.model, i,
-           camera.params[i]);
+      fail_in(where, "camera {} ({}): parameter {} is {}", camera.id, camera.model, i,
+              camera.params[i]);
   }
 }
 

@@ -27,7 +27,7 @@ constexpr std::int64_t kVerified = 2, kWatermark = 7;
 [[noreturn]] void fail_of(const std::string& file, sqlite3* database) {
   const int code = database ? sqlite3_errcode(database) : SQLITE_NOMEM;
   if (code == SQLITE_NOMEM) throw std::bad_alloc();
-  fail("{}: is no database of COLMAP: {}", file, sqlite3_errmsg(database));
+  fail_in(file, "is no database of COLMAP: {}", sqlite3_errmsg(database));
 }
 
 // A path as SQLite's URI. SQLite then neither creates files beside the database nor changes it,
@@ -44,7 +44,7 @@ std::string uri_of(const fs::path& file) {
 class Database {
  public:
   explicit Database(const fs::path& file) : file_(file.string()) {
-    if (!fs::is_regular_file(file)) fail("{}: file not found", file_);
+    if (!fs::is_regular_file(file)) fail_in(file_, "file not found");
     sqlite3* opened = nullptr;
     const int result = sqlite3_open_v2(uri_of(file).c_str(), &opened,
                                        SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
@@ -156,7 +156,7 @@ void require_tables(const Database& database) {
     Rows rows(
         database, "sqlite_master",
         fmt::format("SELECT name FROM sqlite_master WHERE type = 'table' AND name = '{}'", table));
-    if (!rows.next()) fail("{}: is no database of COLMAP: has no table {}", database.file(), table);
+    if (!rows.next()) fail_in(database.file(), "is no database of COLMAP: has no table {}", table);
   }
 }
 
@@ -196,8 +196,8 @@ std::vector<ColmapPoint2D> features_in(const Rows& rows, int column) {
   std::vector<ColmapPoint2D> features;
   for (std::size_t i = 0; i < numbers.size(); i += columns) {
     if (!std::isfinite(numbers[i]) || !std::isfinite(numbers[i + 1]))
-      fail("{}: feature {} is at {} {}", rows.where(column), i / columns, numbers[i],
-           numbers[i + 1]);
+      fail_in(rows.where(column), "feature {} is at {} {}", i / columns, numbers[i],
+              numbers[i + 1]);
     features.push_back({numbers[i], numbers[i + 1], kNoPoint3D,
                         size_of(std::span(numbers).subspan(i + 2, columns - 2))});
   }
@@ -213,7 +213,7 @@ void read_features(const Database& database, std::vector<DatabaseImage>& images)
   Rows rows(database, "keypoints", "SELECT image_id, rows, cols, data FROM keypoints");
   while (rows.next()) {
     DatabaseImage* const image = find(images, rows.integer(0));
-    if (!image) fail("{}: there is no image with this id", rows.where(0));
+    if (!image) fail_in(rows.where(0), "there is no image with this id");
     image->features = features_in(rows, 3);
   }
 }
@@ -247,8 +247,8 @@ DatabasePair pair_in(const Rows& rows, std::vector<DatabaseImage>& images) {
   if (!numbers.empty() && rows.integer(2) != 2) fail("{} is {}", rows.where(2), rows.integer(2));
   for (std::size_t i = 0; i < numbers.size(); i += 2) {
     if (numbers[i] >= first->features.size() || numbers[i + 1] >= second->features.size())
-      fail("{}: match {} has the features {} and {}, but the images have {} and {}", rows.where(3),
-           i / 2, numbers[i], numbers[i + 1], first->features.size(), second->features.size());
+      fail_in(rows.where(3), "match {} has the features {} and {}, but the images have {} and {}",
+              i / 2, numbers[i], numbers[i + 1], first->features.size(), second->features.size());
     pair.matches.push_back({numbers[i], numbers[i + 1]});
   }
   return pair;

@@ -41,8 +41,7 @@ ColmapCamera colmap_camera(const CameraModel& model, const std::string& path) {
   if (model.distortion) {
     const auto found = lens::model_of(*model.distortion);
     if (!found)
-      fail("{}: no camera model of COLMAP describes its lens: undistort the images on import",
-           path);
+      fail_in(path, "no camera model of COLMAP describes its lens: undistort the images on import");
     form = *found;
   }
   ColmapCamera camera;
@@ -78,7 +77,7 @@ class Cameras {
 std::string name_below(const SceneImage& image, const fs::path& folder) {
   const fs::path name = fs::path(image.path).lexically_normal().lexically_relative(folder);
   if (name.empty() || *name.begin() == ".." || *name.begin() == ".")
-    fail("{}: is not in the image folder {}", image.path, folder.string());
+    fail_in(image.path, "is not in the image folder {}", folder.string());
   return name.generic_string();
 }
 
@@ -152,7 +151,7 @@ ColmapModel export_colmap_model(const Scene& scene, const fs::path& image_folder
     exported.camera = cameras.id_of(image);
     exported.name = name_below(image, image_folder);
     exported.pose = image.pose;
-    if (!names.insert(exported.name).second) fail("{}: two images have this path", image.path);
+    if (!names.insert(exported.name).second) fail_in(image.path, "two images have this path");
     model.images.push_back(std::move(exported));
   }
   add_points(scene, index_of, model);

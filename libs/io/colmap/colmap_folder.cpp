@@ -130,9 +130,9 @@ bool holds_model(const fs::path& folder, ModelForm form) {
 ModelForm model_form(const fs::path& folder) {
   for (const ModelForm form : {ModelForm::binary, ModelForm::text})
     if (holds_model(folder, form)) return form;
-  fail("{}: contains no complete COLMAP model: a text model lacks {}, a binary model lacks {}",
-       folder.string(), missing_parts(folder, ModelForm::text),
-       missing_parts(folder, ModelForm::binary));
+  fail_in(folder,
+          "contains no complete COLMAP model: a text model lacks {}, a binary model lacks {}",
+          missing_parts(folder, ModelForm::text), missing_parts(folder, ModelForm::binary));
 }
 
 ModelForm cameras_form(const fs::path& folder) {
@@ -140,7 +140,7 @@ ModelForm cameras_form(const fs::path& folder) {
     if (holds_model(folder, form)) return form;
   for (const ModelForm form : {ModelForm::binary, ModelForm::text})
     if (has_part(folder, "cameras", form)) return form;
-  fail("{}: has neither cameras.txt nor cameras.bin", folder.string());
+  fail_in(folder, "has neither cameras.txt nor cameras.bin");
 }
 
 void warn_of_ignored_cameras(const fs::path& folder, ModelForm read,

@@ -51,7 +51,7 @@ std::vector<MaskedPhotograph> photographs_in(const fs::path& folder) {
   std::vector<MaskedPhotograph> photographs;
   for (const fs::path& file : files_below(folder))
     if (const auto size = size_of(file)) photographs.push_back({file, {}, *size});
-  if (photographs.empty()) fail("{}: has no photographs", folder.string());
+  if (photographs.empty()) fail_in(folder, "has no photographs");
   return photographs;
 }
 
@@ -67,7 +67,7 @@ void choose_mask_files(const ColmapMasks& masks, std::vector<MaskedPhotograph>& 
   for (std::size_t i = 0; i < found.size(); ++i) {
     photographs[i].mask = found[i].path;
     if (found[i].path.empty())
-      fail("{} {}: no mask for image {}: looked for {}", masks.name_of("mask_folder"),
+      fail("{} {}: no mask for image {}: looked for {}", setting("mask_folder"),
            masks.masks.string(), photographs[i].image.string(), found[i].looked_for);
   }
 }
@@ -82,7 +82,7 @@ void refuse_masks_among_photographs(const ColmapMasks& masks) {
   const fs::path part = output.lexically_relative(fs::weakly_canonical(masks.images, error));
   if (!error && !part.empty() && *part.begin() != "..")
     fail("{} {}: is in the folder of the photographs, {}, where masks would count as photographs",
-         masks.name_of("output"), masks.output.string(), masks.images.string());
+         setting("output"), masks.output.string(), masks.images.string());
 }
 
 void check_mask_outputs(const ColmapMasks& masks, std::span<const MaskedPhotograph> photographs) {
@@ -91,7 +91,7 @@ void check_mask_outputs(const ColmapMasks& masks, std::span<const MaskedPhotogra
     inputs.insert(inputs.end(), {one.image, one.mask});
     outputs.push_back(output_of(one, masks));
   }
-  require_no_inputs(outputs, inputs, masks.name_of("output"));
+  require_no_inputs(outputs, inputs, setting("output"));
 }
 
 void write_one(const ColmapMasks& masks, MaskedPhotograph& photograph) {
@@ -113,7 +113,7 @@ void tell(const ColmapMasks& masks, std::span<const MaskedPhotograph> photograph
   log_info("{}: {} masks, which leave out {:.1f} % of the pixels", masks.output.string(),
            photographs.size(), percent);
   if (left_out == 0)
-    log_warning("{} {}: no mask has this label", masks.name_of("ignore_mask_label"), masks.label);
+    log_warning("{} {}: no mask has this label", setting("ignore_mask_label"), masks.label);
 }
 
 }  // namespace

@@ -18,9 +18,8 @@ struct ColmapMasks {
                                  // of one mask for all photographs
   int label = 0;                 // of the pixels to leave out
   std::filesystem::path output;  // folder for COLMAP's masks
-  // Errors name the fields masks, label and output by name_of("mask_folder"),
-  // name_of("ignore_mask_label") and name_of("output").
-  SettingNames name_of = own_name;
+  // Messages call the fields masks, label and output the settings "mask_folder",
+  // "ignore_mask_label" and "output".
 };
 
 // Writes a mask for every photograph of `images` and of its subfolders; links to folders are not

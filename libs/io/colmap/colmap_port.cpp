@@ -57,7 +57,7 @@ refractive::Port<double> port_from(std::string_view word, const PortNumbers& v,
   else if (word == kWords[1])
     port = refractive::DomePort<double>{first, v[3], v[4], v[5], v[6], v[7]};
   else
-    fail("{}: the port '{}' is neither FLATPORT nor DOMEPORT", where, word);
+    fail_in(where, "the port '{}' is neither FLATPORT nor DOMEPORT", word);
   check_port(port, where);
   return port;
 }

@@ -35,7 +35,7 @@ class TextFields {
   bool is_camera() { return line_.word("sensor type") == kCameraWord; }
   bool flag(const char* field) {
     const auto value = id(field);
-    if (value > 1) fail("{}: {} is {}, expected 0 or 1", where(), field, value);
+    if (value > 1) fail_in(where(), "{} is {}, expected 0 or 1", field, value);
     return value == 1;
   }
   ColmapPose pose() {
@@ -44,7 +44,7 @@ class TextFields {
     return pose;
   }
   void end() const {
-    if (!line_.empty()) fail("{}: '{}' follows the last value", where(), line_.rest());
+    if (!line_.empty()) fail_in(where(), "'{}' follows the last value", line_.rest());
   }
 
  private:
@@ -67,7 +67,7 @@ class BinaryFields {
   bool is_camera() { return in_.read<std::int32_t>("sensor type") == kCameraNumber; }
   bool flag(const char* field) {
     const auto value = in_.read<std::uint8_t>(field);
-    if (value > 1) fail("{}: {} is {}, expected 0 or 1", where(), field, value);
+    if (value > 1) fail_in(where(), "{} is {}, expected 0 or 1", field, value);
     return value == 1;
   }
   ColmapPose pose() {
@@ -94,10 +94,10 @@ Rig parse_rig(Fields in) {
     camera.is_reference = i == 0;
     if (i > 0 && in.flag("HAS_POSE")) camera.pose = pose_from_colmap(in.pose(), in.where());
     if (!is_camera && camera.is_reference)
-      fail("{}: the reference sensor of rig {} is no camera", in.where(), rig.id);
+      fail_in(in.where(), "the reference sensor of rig {} is no camera", rig.id);
     if (!is_camera) continue;
     if (std::ranges::find(rig.cameras, camera.id, &RigCamera::id) != rig.cameras.end())
-      fail("{}: camera {} occurs twice in rig {}", in.where(), camera.id, rig.id);
+      fail_in(in.where(), "camera {} occurs twice in rig {}", camera.id, rig.id);
     rig.cameras.push_back(camera);
   }
   in.end();
@@ -118,7 +118,7 @@ RigFrame parse_frame(Fields in) {
     const std::uint64_t id = in.long_id("image id");
     if (!is_camera) continue;
     if (id > std::numeric_limits<std::uint32_t>::max())
-      fail("{}: image id is {}, which is too large", in.where(), id);
+      fail_in(in.where(), "image id is {}, which is too large", id);
     image.image = static_cast<std::uint32_t>(id);
     frame.images.push_back(image);
   }
@@ -143,7 +143,7 @@ std::vector<Record> records_of_binary(const fs::path& path, std::size_t min_byte
   const std::size_t count = in.count(min_bytes, "records");
   std::vector<Record> records;
   for (std::size_t i = 0; i < count; ++i) records.push_back(parse(BinaryFields(in)));
-  if (in.left() > 0) fail("{}: {} bytes follow the last record", path.string(), in.left());
+  if (in.left() > 0) fail_in(path, "{} bytes follow the last record", in.left());
   return records;
 }
 
@@ -152,22 +152,21 @@ void require_unique_ids(const std::vector<Record>& records, const fs::path& path
                         const char* kind) {
   std::set<std::uint32_t> ids;
   for (const Record& record : records)
-    if (!ids.insert(record.id).second)
-      fail("{}: {} {} occurs twice", path.string(), kind, record.id);
+    if (!ids.insert(record.id).second) fail_in(path, "{} {} occurs twice", kind, record.id);
 }
 
 void check_frames(const RigFile& file, const fs::path& path) {
   for (const RigFrame& frame : file.frames) {
     const auto rig = std::ranges::find(file.rigs, frame.rig, &Rig::id);
     if (rig == file.rigs.end())
-      fail("{}: frame {} is of rig {}, which does not exist", path.string(), frame.id, frame.rig);
+      fail_in(path, "frame {} is of rig {}, which does not exist", frame.id, frame.rig);
     std::set<std::uint32_t> cameras;
     for (const RigFrame::Image& image : frame.images) {
       if (std::ranges::find(rig->cameras, image.camera, &RigCamera::id) == rig->cameras.end())
-        fail("{}: frame {} has an image of camera {}, which is not in rig {}", path.string(),
-             frame.id, image.camera, frame.rig);
+        fail_in(path, "frame {} has an image of camera {}, which is not in rig {}", frame.id,
+                image.camera, frame.rig);
       if (!cameras.insert(image.camera).second)
-        fail("{}: frame {} has two images of camera {}", path.string(), frame.id, image.camera);
+        fail_in(path, "frame {} has two images of camera {}", frame.id, image.camera);
     }
   }
 }
@@ -194,7 +193,7 @@ RigFile read_rigs(const fs::path& path) {
   if (path.extension() == ".json") return {read_rig_config(path), {}, true};
   const bool binary = path.extension() == ".bin";
   if (!binary && path.extension() != ".txt")
-    fail("{}: the name of a file of rigs ends with .json, .txt or .bin", path.string());
+    fail_in(path, "the name of a file of rigs ends with .json, .txt or .bin");
   const fs::path frames = path.parent_path() / ("frames" + path.extension().string());
   RigFile file;
   file.rigs = binary ? read_rigs_binary(path) : read_rigs_text(path);

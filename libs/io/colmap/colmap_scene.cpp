@@ -36,8 +36,8 @@ void keep_lens(const ColmapCamera& from, const refractive::LensDistortion<double
   camera.distortion = distortion;
   const auto lens = distorted_lens<double>(camera);
   if (!(lens.field > 0))
-    fail("{}: camera {}: the distortion of its {} lens mirrors the image", model_folder.string(),
-         from.id, from.model);
+    fail_in(model_folder, "camera {}: the distortion of its {} lens mirrors the image", from.id,
+            from.model);
   if (!lens.shows_all(camera.width, camera.height))
     log_warning(
         "{}: camera {} ({}): its camera model is not defined up to the corners of the image; "
@@ -50,8 +50,8 @@ ImportedCamera import_camera(const ColmapCamera& camera, const ColmapImport& imp
   constexpr std::uint64_t kLargest = 1u << 16;
   if (camera.width == 0 || camera.height == 0 || camera.width > kLargest ||
       camera.height > kLargest)
-    fail("{}: camera {}: size {} x {} is out of range", model_folder.string(), camera.id,
-         camera.width, camera.height);
+    fail_in(model_folder, "camera {}: size {} x {} is out of range", camera.id, camera.width,
+            camera.height);
   ImportedCamera imported;
   imported.camera.width = static_cast<int>(camera.width);
   imported.camera.height = static_cast<int>(camera.height);
@@ -68,8 +68,8 @@ ImportedCamera import_camera(const ColmapCamera& camera, const ColmapImport& imp
   if (resampled) imported.camera.lens = pinhole_inside(camera, model_folder.string());
   if (!lens && !resampled) imported.camera.lens = in_air.pinhole;
   if (const auto& l = imported.camera.lens; !(l.fx > 0 && l.fy > 0))
-    fail("{}: camera {}: focal length ({}, {}) is not positive", model_folder.string(), camera.id,
-         l.fx, l.fy);
+    fail_in(model_folder, "camera {}: focal length ({}, {}) is not positive", camera.id, l.fx,
+            l.fy);
   imported.resampled = resampled;
   if (!lens && !resampled) keep_lens(camera, *distortion, model_folder, imported.camera);
   return imported;
@@ -94,8 +94,8 @@ bool check_image(const fs::path& path, const CameraModel& camera) {
   const ImageHeader header = read_image_header(path);
   const cv::Size size = header.size;
   if (size.width != camera.width || size.height != camera.height)
-    fail("{}: image is {} x {}, but its camera is {} x {}", path.string(), size.width, size.height,
-         camera.width, camera.height);
+    fail_in(path, "image is {} x {}, but its camera is {} x {}", size.width, size.height,
+            camera.width, camera.height);
   return header.bits == 8 && !header.alpha;
 }
 
@@ -125,13 +125,12 @@ void check_undistorted_names(const ColmapModel& model, std::span<const Distorted
                              const ColmapImport& import) {
   std::error_code error;
   if (fs::equivalent(import.image_folder, import.undistorted_folder, error))
-    fail("{}: contains the images to undistort and would be overwritten",
-         import.undistorted_folder.string());
+    fail_in(import.undistorted_folder, "contains the images to undistort and would be overwritten");
   for (const ColmapImage& image : model.images) {
     const fs::path name = image.name;
     if (name.is_absolute() || std::find(name.begin(), name.end(), "..") != name.end())
-      fail("{}: image {}: name '{}' is not in the image folder", import.model_folder.string(),
-           image.id, image.name);
+      fail_in(import.model_folder, "image {}: name '{}' is not in the image folder", image.id,
+              image.name);
   }
   require_apart(distorted, import.model_folder);
   std::vector<fs::path> photographs, undistorted;
@@ -213,10 +212,10 @@ void check_ports(const Housing& resolved, const Scene& scene,
     const std::string& read =
         entry == resolved.images.end() ? resolved.default_port : entry->second;
     if (read != ports[i])
-      fail(
-          "{}: its port is '{}', but the end of its path matches an image with port '{}': rename a "
-          "folder",
-          path, ports[i], read);
+      fail_in(path,
+              "its port is '{}', but the end of its path matches an image with port '{}': rename a "
+              "folder",
+              ports[i], read);
   }
 }
 
@@ -252,8 +251,8 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
                           const ProgressSink& undistorting, const ProgressSink& preparing_cameras,
                           const ProgressSink& checking_images) {
   if (model.images.size() < 2)
-    fail("{}: the model has {} registered images, at least 2 are needed",
-         import.model_folder.string(), model.images.size());
+    fail_in(import.model_folder, "the model has {} registered images, at least 2 are needed",
+            model.images.size());
   const auto cameras = import_cameras(model, import, preparing_cameras);
   const bool from_zero = std::any_of(model.images.begin(), model.images.end(),
                                      [](const ColmapImage& image) { return image.id == 0; });

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 void require_no_rest(const TextLine& line) {
   if (!line.rest().empty())
-    fail("{}: unexpected '{}' at the end", line.where(), line.rest().substr(0, 40));
+    fail_in(line.where(), "unexpected '{}' at the end", line.rest().substr(0, 40));
 }
 
 // The port at the end of the line, which only COLMAP-Underwater writes.
@@ -33,7 +33,7 @@ ColmapCamera parse_camera(TextLine& line) {
   camera.height = line.number<std::uint64_t>("height");
   const int parameters = colmap_parameter_count(camera.model);
   if (parameters < 0)
-    fail("{}: camera {} has the unknown model '{}'", line.where(), camera.id, camera.model);
+    fail_in(line.where(), "camera {} has the unknown model '{}'", camera.id, camera.model);
   for (int i = 0; i < parameters; ++i)
     camera.params.push_back(line.number<double>(camera.model + " parameter"));
   camera.port = parse_port(line);
@@ -61,17 +61,17 @@ void parse_focal_sigma(TextLine comment, StatedSigmas& stated) {
   require_no_rest(comment);
   constexpr double kLeast = 1e-12;  // far below any measurement; its inverse square is finite
   if (!(sigma >= kLeast && sigma <= 1))
-    fail("{}: focal_sigma of camera {} is {}, expected a value above 0 and at most 1", where, id,
-         sigma);
+    fail_in(where, "focal_sigma of camera {} is {}, expected a value above 0 and at most 1", id,
+            sigma);
   if (!stated.insert({id, {sigma, where}}).second)
-    fail("{}: focal_sigma of camera {} occurs twice", where, id);
+    fail_in(where, "focal_sigma of camera {} occurs twice", id);
 }
 
 void set_focal_sigmas(const StatedSigmas& stated, std::vector<ColmapCamera>& cameras) {
   for (const auto& [id, sigma] : stated) {
     const auto camera = std::ranges::find(cameras, id, &ColmapCamera::id);
     if (camera == cameras.end())
-      fail("{}: focal_sigma names camera {}, which the file does not contain", sigma.where, id);
+      fail_in(sigma.where, "focal_sigma names camera {}, which the file does not contain", id);
     camera->focal_sigma = sigma.sigma;
   }
 }
@@ -85,7 +85,7 @@ ColmapImage parse_image(TextLine& line) {
   image.pose = pose_from_colmap(pose, line.where());
   image.camera = line.number<std::uint32_t>("camera id");
   image.name = line.rest();
-  if (image.name.empty()) fail("{}: the image name is missing", line.where());
+  if (image.name.empty()) fail_in(line.where(), "the image name is missing");
   return image;
 }
 
@@ -146,7 +146,7 @@ std::string cameras_as_text(const std::vector<ColmapCamera>& cameras, Dialect di
 void check_name(const ColmapImage& image, const std::string& file) {
   const std::string& name = image.name;
   if (name.empty() || trimmed(name) != name || name.find('\n') != std::string::npos)
-    fail("{}: image {} has the name '{}', which text files cannot hold", file, image.id, name);
+    fail_in(file, "image {} has the name '{}', which text files cannot hold", image.id, name);
 }
 
 std::string images_as_text(const ColmapModel& model, const std::string& file) {
@@ -211,7 +211,7 @@ std::vector<ColmapImage> read_images_text(const fs::path& path) {
     images.push_back(parse_image(*line));
     auto observations = reader.line();
     if (!observations)
-      fail("{}: truncated: image {} has no line of 2D points", path.string(), images.back().id);
+      fail_in(path, "truncated: image {} has no line of 2D points", images.back().id);
     parse_observations(*observations, images.back().points);
   }
   return images;
@@ -237,8 +237,7 @@ void write_text(const fs::path& folder, const ColmapModel& model, Dialect dialec
 
 void require_no_binary_model(const fs::path& folder) {
   if (holds_model(folder, ModelForm::binary))
-    fail("{}: holds a binary model, which would be read instead of the text model to write",
-         folder.string());
+    fail_in(folder, "holds a binary model, which would be read instead of the text model to write");
 }
 
 void write_colmap_text(const fs::path& folder, const ColmapModel& model) {

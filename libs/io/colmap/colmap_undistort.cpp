@@ -86,7 +86,7 @@ void undistort(const DistortedImage& image, const cv::Mat2f& map, const fs::path
   const cv::Mat straight = resampled(read_photograph(image.source), map);
   std::error_code error;
   fs::create_directories(target.parent_path(), error);
-  if (error) fail("{}: cannot be made: {}", target.parent_path().string(), error.message());
+  if (error) fail_in(target.parent_path(), "cannot be made: {}", error.message());
   constexpr int kQuality = 98;  // high, because the image is compressed a second time
   if (is_jpeg_name(target))
     write_jpeg(target, straight, kQuality);
@@ -110,8 +110,9 @@ void require_apart(std::span<const DistortedImage> images, const fs::path& model
     const std::string undistorted = undistorted_name(image).generic_string();
     const auto [other, added] = taken.try_emplace(lower_case(undistorted), &image.name);
     if (!added)
-      fail("{}: the images {} and {} would both be undistorted to {}: rename one image",
-           model_folder.string(), *other->second, image.name, undistorted);
+      fail_in(model_folder,
+              "the images {} and {} would both be undistorted to {}: rename one image",
+              *other->second, image.name, undistorted);
   }
 }
 

@@ -57,11 +57,11 @@ RigCamera camera_of(const JsonPlace& place) {
   camera.is_reference = is_reference(place);
   camera.pose = pose_of(place);
   if (camera.is_reference && camera.pose)
-    fail("{}: states a pose of the reference camera, which is the frame of the rig", place.where);
+    fail_in(place.where, "states a pose of the reference camera, which is the frame of the rig");
   camera.sigma_translation = sigma_of(place, "sigma_translation", 1);
   camera.sigma_rotation = sigma_of(place, "sigma_rotation", 90);
   if (!camera.pose && (camera.sigma_translation > 0 || camera.sigma_rotation > 0))
-    fail("{}: states a standard deviation of a pose that is missing", place.where);
+    fail_in(place.where, "states a standard deviation of a pose that is missing");
   return camera;
 }
 
@@ -75,11 +75,11 @@ Rig rig_of(const JsonPlace& place, std::set<std::string>& prefixes) {
     const JsonPlace camera{cameras.json[i], fmt::format("{}, camera {}", place.where, i + 1)};
     rig.cameras.push_back(camera_of(camera));
     if (const std::string& prefix = rig.cameras.back().prefix; !prefixes.insert(prefix).second)
-      fail("{}: image_prefix '{}' occurs twice", camera.where, prefix);
+      fail_in(camera.where, "image_prefix '{}' occurs twice", prefix);
   }
   if (const auto count = std::ranges::count(rig.cameras, true, &RigCamera::is_reference);
       count != 1)
-    fail("{}: has {} cameras with ref_sensor true, expected one", place.where, count);
+    fail_in(place.where, "has {} cameras with ref_sensor true, expected one", count);
   return rig;
 }
 
@@ -87,7 +87,7 @@ Rig rig_of(const JsonPlace& place, std::set<std::string>& prefixes) {
 
 std::vector<Rig> read_rig_config(const std::filesystem::path& path) {
   const nlohmann::json json = read_json(path);
-  if (!json.is_array() || json.empty()) fail("{}: is not a list of rigs", path.string());
+  if (!json.is_array() || json.empty()) fail_in(path, "is not a list of rigs");
   std::vector<Rig> rigs;
   std::set<std::string> prefixes;
   for (std::size_t i = 0; i < json.size(); ++i)

@@ -47,17 +47,19 @@ void declare_bit_depth(OptionList& list, int& bit_depth) {
 }
 
 int common_bit_depth(std::span<const fs::path> photographs, std::span<const ImageHeader> headers,
-                     int asked, const std::string& setting) {
+                     int asked) {
   std::vector<fs::path> wide;
   for (std::size_t i = 0; i < photographs.size(); ++i)
     if (headers[i].bits > 8) wide.push_back(photographs[i]);
   if (wide.empty()) {
-    if (asked != 0) log_warning("{} {}: is not used: no image has 16 bits", setting, asked);
+    if (asked != 0)
+      log_warning("{} {}: is not used: no image has 16 bits", setting("bit_depth"), asked);
     return 16;
   }
   if (asked != 0) return asked;
   const int bits = largest_bits(wide, decodes_that_fit(headers));
-  log_info("The values of {} images of 16 bits use {} bits (see {})", wide.size(), bits, setting);
+  log_info("The values of {} images of 16 bits use {} bits (see {})", wide.size(), bits,
+           setting("bit_depth"));
   return bits;
 }
 

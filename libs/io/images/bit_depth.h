@@ -29,12 +29,11 @@ void declare_bit_depth(OptionList& list, int& bit_depth);
 // 3. Otherwise the result is the number of bits that the largest value in all photographs needs, at
 //    least 8. The log states the result.
 //
-// Messages call `asked` by the name `setting`. Precondition: `asked` is 0, or from 8 to 16.
+// Messages call `asked` the setting "bit_depth". Precondition: `asked` is 0, or from 8 to 16.
 // Photographs are decoded only under rule 3, and only those of more than 8 bits. They are decoded
 // in parallel, as many at a time as fit into a quarter of the free memory, and at least one. Error
 // for a photograph that cannot be read.
 int common_bit_depth(std::span<const std::filesystem::path> photographs,
-                     std::span<const ImageHeader> headers, int asked,
-                     const std::string& setting = "bit_depth");
+                     std::span<const ImageHeader> headers, int asked);
 
 }  // namespace axial::io

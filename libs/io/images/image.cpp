@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 void refuse_truncated(const std::string& bytes, const fs::path& path) {
-  if (bytes.empty()) fail("{}: is empty, not an image", path.string());
+  if (bytes.empty()) fail_in(path, "is empty, not an image");
   if (is_jpeg(bytes)) refuse_truncated_jpeg(bytes, path);
   if (is_png(bytes)) refuse_truncated_png(bytes, path);
 }
@@ -60,9 +60,9 @@ bool is_rare_format(std::string_view bytes) {
 void require_known_format(std::string_view bytes, const fs::path& path) {
   if (is_tiff(bytes) || is_rare_format(bytes)) return;
   if (const auto format = unread_format(bytes); !format.empty())
-    fail("{}: is {}, a format that is not supported; supported are JPEG, PNG and TIFF",
-         path.string(), format);
-  fail("{}: is not in a supported image format, such as JPEG, PNG and TIFF", path.string());
+    fail_in(path, "is {}, a format that is not supported; supported are JPEG, PNG and TIFF",
+            format);
+  fail_in(path, "is not in a supported image format, such as JPEG, PNG and TIFF");
 }
 
 // Decodes formats that image_codecs.h does not handle.
@@ -74,15 +74,15 @@ cv::Mat decode_by_opencv(const std::string& bytes, const fs::path& path, int fla
   try {
     image = cv::imdecode(raw, flags);
   } catch (const cv::Exception& error) {
-    fail("{}: cannot be decoded: {}", path.string(), error.err);
+    fail_in(path, "cannot be decoded: {}", error.err);
   }
   if (!image.empty()) return image;
-  fail("{}: cannot be decoded: truncated or damaged", path.string());
+  fail_in(path, "cannot be decoded: truncated or damaged");
 }
 
 cv::Mat read_as_stored(const fs::path& path) {
   const std::string bytes = read_image_bytes(path);
-  if (!is_tiff(bytes)) fail("{}: is not a TIFF", path.string());
+  if (!is_tiff(bytes)) fail_in(path, "is not a TIFF");
   return decode_by_opencv(bytes, path, cv::IMREAD_UNCHANGED);
 }
 
@@ -100,12 +100,11 @@ Photograph decode_rare(const std::string& bytes, const fs::path& path) {
                                             : cv::IMREAD_UNCHANGED;
   cv::Mat pixels = decode_by_opencv(bytes, path, flags);
   if (pixels.depth() != CV_8U && pixels.depth() != CV_16U)
-    fail(
-        "{}: pixels are floating-point or signed numbers; photographs must have unsigned numbers "
-        "of 8 or 16 bits",
-        path.string());
+    fail_in(path,
+            "pixels are floating-point or signed numbers; photographs must have unsigned numbers "
+            "of 8 or 16 bits");
   if (pixels.channels() == 1) cv::cvtColor(pixels, pixels, cv::COLOR_GRAY2BGR);
-  if (pixels.channels() < 3) fail("{}: has {} channels", path.string(), pixels.channels());
+  if (pixels.channels() < 3) fail_in(path, "has {} channels", pixels.channels());
   return without_alpha(pixels);
 }
 
@@ -134,9 +133,9 @@ void write_encoded(const fs::path& path, const std::string& extension, const cv:
   try {
     encoded = cv::imencode(extension, image, bytes, parameters);
   } catch (const cv::Exception& error) {
-    fail("{}: cannot be encoded: {}", path.string(), error.err);
+    fail_in(path, "cannot be encoded: {}", error.err);
   }
-  if (!encoded) fail("{}: cannot be encoded as {}", path.string(), extension);
+  if (!encoded) fail_in(path, "cannot be encoded as {}", extension);
   write_atomically(path, std::string_view(reinterpret_cast<char*>(bytes.data()), bytes.size()));
 }
 
@@ -145,7 +144,7 @@ void write_encoded(const fs::path& path, const std::string& extension, const cv:
 void check_image_size(cv::Size size, const fs::path& path) {
   constexpr std::int64_t kMost = std::int64_t{1} << 30;
   if (size.width < 0 || size.height < 0 || std::int64_t{size.width} * size.height > kMost)
-    fail("{}: {} x {} pixels are too many", path.string(), size.width, size.height);
+    fail_in(path, "{} x {} pixels are too many", size.width, size.height);
 }
 
 unsigned bytes_as_a_whole(const ImageHeader& header) {
@@ -227,10 +226,10 @@ cv::Mat3b in_8_bits(const cv::Mat& pixels, int bits) {
 cv::Mat1w read_label_image(const fs::path& path) {
   const cv::Mat image = without_copies(decode_labels(read_image_bytes(path), path));
   if (image.channels() != 1 || (image.depth() != CV_8U && image.depth() != CV_16U))
-    fail(
-        "{}: is not a label image: it has {} channels of {} bytes, expected one channel of 1 or 2 "
-        "bytes",
-        path.string(), image.channels(), image.elemSize1());
+    fail_in(path,
+            "is not a label image: it has {} channels of {} bytes, expected one channel of 1 or 2 "
+            "bytes",
+            image.channels(), image.elemSize1());
   cv::Mat1w labels;
   image.convertTo(labels, CV_16U);
   return labels;
@@ -238,20 +237,20 @@ cv::Mat1w read_label_image(const fs::path& path) {
 
 void check_mask_shape(const fs::path& mask, cv::Size size, cv::Size image) {
   if (!same_shape(size, image))
-    fail("{}: is {}x{}, but its image is {}x{}", mask.string(), size.width, size.height,
-         image.width, image.height);
+    fail_in(mask, "is {}x{}, but its image is {}x{}", size.width, size.height, image.width,
+            image.height);
 }
 
 cv::Mat1f read_float_tiff(const fs::path& path) {
   const cv::Mat image = read_as_stored(path);
   if (image.type() != CV_32FC1)
-    fail("{}: is not an image of one float channel ({} channels of {} bytes)", path.string(),
-         image.channels(), image.elemSize1());
+    fail_in(path, "is not an image of one float channel ({} channels of {} bytes)",
+            image.channels(), image.elemSize1());
   return image;
 }
 
 void write_float_tiff(const fs::path& path, const cv::Mat& image) {
-  if (image.depth() != CV_32F) fail("{}: only float images are written as TIFF", path.string());
+  if (image.depth() != CV_32F) fail_in(path, "only float images are written as TIFF");
   // OpenCV stores its last channel first in the file. Our first channel must be first.
   cv::Mat stored;
   if (image.channels() == 3)

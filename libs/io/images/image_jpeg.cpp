@@ -122,8 +122,7 @@ bool is_jpeg(std::string_view bytes) {
 }
 
 void refuse_truncated_jpeg(std::string_view bytes, const fs::path& path) {
-  if (!jpeg_outline(bytes).complete)
-    fail("{}: truncated: the JPEG data has no end marker", path.string());
+  if (!jpeg_outline(bytes).complete) fail_in(path, "truncated: the JPEG data has no end marker");
 }
 
 ImageHeader jpeg_header(std::string_view bytes, const fs::path& path) {
@@ -137,7 +136,7 @@ Photograph decode_jpeg(std::string_view bytes, const fs::path& path) {
   check_image_size(jpeg_outline(bytes).size, path);
   JpegReading reading;
   if (!read_pixels(reading, bytes))
-    fail("{}: cannot be decoded: {}", path.string(), reading.error.text.data());
+    fail_in(path, "cannot be decoded: {}", reading.error.text.data());
   if (reading.pixels.channels() == 4) {  // CMYK: OpenCV converts it
     const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
     return {cv::imdecode(raw, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION), {}};

@@ -110,13 +110,12 @@ cv::Mat decode(std::string_view bytes, const fs::path& path, bool labels) {
   constexpr double kBestPacked = 1032;
   const double least = static_cast<double>(header.size.area()) / 8;
   if (least > kBestPacked * static_cast<double>(bytes.size()))
-    fail("{}: damaged: {} bytes cannot hold {} x {} pixels", path.string(), bytes.size(),
-         header.size.width, header.size.height);
+    fail_in(path, "damaged: {} bytes cannot hold {} x {} pixels", bytes.size(), header.size.width,
+            header.size.height);
   PngReading reading;
   reading.bytes = bytes;
   reading.labels = labels;
-  if (!read_pixels(reading))
-    fail("{}: cannot be decoded: {}", path.string(), reading.complaint.data());
+  if (!read_pixels(reading)) fail_in(path, "cannot be decoded: {}", reading.complaint.data());
   return reading.pixels;
 }
 
@@ -128,12 +127,12 @@ bool is_png(std::string_view bytes) {
 
 void refuse_truncated_png(std::string_view bytes, const fs::path& path) {
   if (!has_chunk(bytes, "IEND") || bytes.find("IEND\xAE\x42\x60\x82") == std::string::npos)
-    fail("{}: truncated: the PNG data has no end chunk", path.string());
+    fail_in(path, "truncated: the PNG data has no end chunk");
 }
 
 ImageHeader png_header(std::string_view bytes, const fs::path& path) {
   if (bytes.size() < 33 || bytes.substr(12, 4) != "IHDR")
-    fail("{}: damaged: the PNG data does not begin with its header", path.string());
+    fail_in(path, "damaged: the PNG data does not begin with its header");
   ImageHeader header;
   const auto side = [&](std::size_t at) {
     return static_cast<int>(std::min<std::size_t>(four_bytes(bytes, at), INT32_MAX));

@@ -103,8 +103,7 @@ class Tiff {
   }
 
   [[noreturn]] void give_up(const char* otherwise) const {
-    fail("{}: cannot be decoded: {}", path_.string(),
-         complaint_[0] != '\0' ? complaint_.data() : otherwise);
+    fail_in(path_, "cannot be decoded: {}", complaint_[0] != '\0' ? complaint_.data() : otherwise);
   }
 
   std::uint32_t width, height;
@@ -126,14 +125,14 @@ class Tiff {
 
   void check() const {
     if (format == SAMPLEFORMAT_IEEEFP || format == SAMPLEFORMAT_COMPLEXIEEEFP)
-      fail(
-          "{}: pixels are floating-point numbers of {} bits; photographs must have whole numbers "
-          "of 8 or 16",
-          path_.string(), bits);
+      fail_in(path_,
+              "pixels are floating-point numbers of {} bits; photographs must have whole numbers "
+              "of 8 or 16",
+              bits);
     if (format == SAMPLEFORMAT_INT || format == SAMPLEFORMAT_COMPLEXINT || bits == 0 || bits > 16)
-      fail(
-          "{}: pixels are {} numbers of {} bits; photographs must have unsigned numbers of 8 or 16",
-          path_.string(), format == SAMPLEFORMAT_UINT ? "unsigned" : "signed", bits);
+      fail_in(path_,
+              "pixels are {} numbers of {} bits; photographs must have unsigned numbers of 8 or 16",
+              format == SAMPLEFORMAT_UINT ? "unsigned" : "signed", bits);
     check_image_size({static_cast<int>(std::min<std::uint32_t>(width, INT32_MAX)),
                       static_cast<int>(std::min<std::uint32_t>(height, INT32_MAX))},
                      path_);
@@ -142,8 +141,8 @@ class Tiff {
     const double unpacked = static_cast<double>(width) * height * samples * bits / 8;
     if (samples == 0 ||
         unpacked > kBestPacked * static_cast<double>(stream_.bytes.size()) + kAlways)
-      fail("{}: damaged: {} bytes cannot hold {} x {} pixels of {} samples", path_.string(),
-           stream_.bytes.size(), width, height, samples);
+      fail_in(path_, "damaged: {} bytes cannot hold {} x {} pixels of {} samples",
+              stream_.bytes.size(), width, height, samples);
     check_length();
   }
 
@@ -157,7 +156,7 @@ class Tiff {
     const std::uint64_t size = stream_.bytes.size();
     for (std::uint32_t i = 0; offsets && lengths && i < parts; ++i)
       if (offsets[i] > size || lengths[i] > size - offsets[i])
-        fail("{}: truncated: the TIFF data ends before its pixels do", path_.string());
+        fail_in(path_, "truncated: the TIFF data ends before its pixels do");
   }
 
   Stream stream_;
@@ -269,7 +268,7 @@ class SampleReader {
 cv::Mat read_samples(const Tiff& tiff, const fs::path& path) {
   const int colors = tiff.grey() ? 1 : 3;
   if (tiff.samples < colors + (tiff.alpha() ? 1 : 0) || tiff.samples > 16)
-    fail("{}: has {} samples in a pixel", path.string(), tiff.samples);
+    fail_in(path, "has {} samples in a pixel", tiff.samples);
   const cv::Mat samples = tiff.bits > 8 ? SampleReader<std::uint16_t>(tiff).read()
                                         : SampleReader<std::uint8_t>(tiff).read();
   const bool grey = tiff.grey();
@@ -303,8 +302,8 @@ Photograph decode_tiff(std::string_view bytes, const fs::path& path) {
   const Tiff tiff(bytes, path);
   const bool samples = tiff.bits >= 8 && (tiff.grey() || tiff.photometric == PHOTOMETRIC_RGB);
   if (tiff.bits > 8 && !samples)
-    fail("{}: pixels of {} bits are grey or RGB, not of photometric interpretation {}",
-         path.string(), tiff.bits, tiff.photometric);
+    fail_in(path, "pixels of {} bits are grey or RGB, not of photometric interpretation {}",
+            tiff.bits, tiff.photometric);
   return without_alpha(samples ? read_samples(tiff, path) : read_by_library(tiff));
 }
 

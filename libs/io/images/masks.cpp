@@ -62,7 +62,7 @@ class MaskFolder {
   MaskFolder(const fs::path& folder, const std::unordered_set<std::string>& images)
       : folder_(folder), images_(images) {
     std::error_code error;
-    if (!fs::is_directory(folder, error)) fail("{}: is not a folder of masks", folder.string());
+    if (!fs::is_directory(folder, error)) fail_in(folder, "is not a folder of masks");
     for (const std::string& image : images) count(image);
   }
 
@@ -145,10 +145,10 @@ void refuse_shared(std::span<const MaskRequest> requests, std::span<const FoundM
     if (path.empty() || path == requests[i].named) continue;
     const auto [other, first] = owner.emplace(path.string(), i);
     if (!first && requests[other->second].image != requests[i].image)
-      fail("{}: would be the mask of both {} and {}: name the masks {}.png and {}.png",
-           path.string(), requests[other->second].image.string(), requests[i].image.string(),
-           requests[other->second].image.filename().string(),
-           requests[i].image.filename().string());
+      fail_in(path, "would be the mask of both {} and {}: name the masks {}.png and {}.png",
+              requests[other->second].image.string(), requests[i].image.string(),
+              requests[other->second].image.filename().string(),
+              requests[i].image.filename().string());
   }
 }
 

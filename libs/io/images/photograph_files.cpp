@@ -35,7 +35,7 @@ std::vector<fs::path> photographs_in_folder(const fs::path& folder, bool with_su
   else
     add_photographs(fs::directory_iterator(folder), photographs);
   std::ranges::sort(photographs);
-  if (photographs.empty()) fail("{}: contains no photographs", folder.string());
+  if (photographs.empty()) fail_in(folder, "contains no photographs");
   return photographs;
 }
 

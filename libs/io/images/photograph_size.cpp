@@ -21,11 +21,11 @@ void require_size(const PhotographSize& photograph) {
   const cv::Size& camera = photograph.camera;
   constexpr double kSmallest = 1.0 / 8;
   if (!(size_ratio(photograph) >= kSmallest))
-    fail("{}: is {}x{}, too small for its camera, which is {}x{}", photograph.file.string(),
-         stored.width, stored.height, camera.width, camera.height);
+    fail_in(photograph.file, "is {}x{}, too small for its camera, which is {}x{}", stored.width,
+            stored.height, camera.width, camera.height);
   if (!same_shape(stored, camera))
-    fail("{}: is {}x{}, but its camera is {}x{}", photograph.file.string(), stored.width,
-         stored.height, camera.width, camera.height);
+    fail_in(photograph.file, "is {}x{}, but its camera is {}x{}", stored.width, stored.height,
+            camera.width, camera.height);
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ struct Bounds {
 Bounds bounds_of(const Mesh& mesh, const std::string& file) {
   Bounds bounds;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    if (!mesh.vertices[v].allFinite()) fail("{}: vertex {} is not finite", file, v);
+    if (!mesh.vertices[v].allFinite()) fail_in(file, "vertex {} is not finite", v);
     bounds.low = bounds.low.cwiseMin(mesh.vertices[v]);
     bounds.high = bounds.high.cwiseMax(mesh.vertices[v]);
   }
@@ -84,12 +84,12 @@ void append(std::string& bytes, std::uint32_t number) {
 }
 
 void write_mesh_glb(const std::filesystem::path& path, const Mesh& mesh, const LocalFrame& frame) {
-  if (mesh.faces.empty()) fail("{}: the mesh has no faces", path.string());
+  if (mesh.faces.empty()) fail_in(path, "the mesh has no faces");
   const std::string json = json_of(mesh, bounds_of(mesh, path.string()), frame);
   const std::uint64_t binary = 12 * (std::uint64_t{mesh.vertices.size()} + mesh.faces.size());
   const std::uint64_t whole = 12 + 8 + json.size() + 8 + binary;
   if (whole > std::numeric_limits<std::uint32_t>::max())
-    fail("{}: a GLB holds at most 4 GiB, but the mesh has {} MB", path.string(), whole / 1'000'000);
+    fail_in(path, "a GLB holds at most 4 GiB, but the mesh has {} MB", whole / 1'000'000);
   std::string bytes;
   bytes.reserve(whole);
   for (const std::uint64_t number : {std::uint64_t{kMagic}, std::uint64_t{kVersion}, whole,
@@ -110,19 +110,18 @@ bool is_written(const std::string& type) {
 // The type that the user gave, or that the extension of the output asks for.
 std::string type_of(const MeshFile& file) {
   const std::string given = lower_case(file.type);
-  if (!is_written(given))
-    fail("{} {}: must be one of ply, obj, glb", file.name_of("type"), file.type);
+  if (!is_written(given)) fail("{} {}: must be one of ply, obj, glb", setting("type"), file.type);
   const std::string extension = known_extension(file.output);
   if (file.type_given || extension.empty() || extension == ".mvs") return given;
   if (!is_written(extension.substr(1)))
-    fail("{} {}: must end in .ply, .obj or .glb", file.name_of("output"), file.output.string());
+    fail("{} {}: must end in .ply, .obj or .glb", setting("output"), file.output.string());
   return extension.substr(1);
 }
 
 }  // namespace
 
 std::filesystem::path mesh_file(const MeshFile& file) {
-  refuse_other_format(file.output, file.name_of("output"));
+  refuse_other_format(file.output, setting("output"));
   const std::string type = type_of(file);
   return mesh_beside(file.scene, file.output, file.ending, type == "ply") += "." + type;
 }

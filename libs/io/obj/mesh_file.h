@@ -13,12 +13,11 @@ namespace axial::io {
 
 // The path of the mesh file to write.
 struct MeshFile {
-  std::filesystem::path scene;      // the scene from which the mesh is made
-  std::filesystem::path output;     // the value of the user; empty: not given
-  std::string type;                 // the format
-  bool type_given = false;          // the user gave the type
-  std::string ending;               // of the default name: "_mesh" for <scene>_mesh.ply
-  SettingNames name_of = own_name;  // names "output" and "type" in errors
+  std::filesystem::path scene;   // the scene from which the mesh is made
+  std::filesystem::path output;  // the value of the user; empty: not given
+  std::string type;              // the format
+  bool type_given = false;       // the user gave the type
+  std::string ending;            // of the default name: "_mesh" for <scene>_mesh.ply
 };
 
 // Returns the path of the mesh file. The type is "ply", "obj" or "glb", in upper or lower case. If

@@ -28,8 +28,8 @@ cv::Mat1f converted(const cv::Mat1f& depth, const CameraModel& model, const std:
         const DepthAlongRay ray = depth_along_ray(camera, u, v);
         const auto other = static_cast<float>(convert(ray, static_cast<double>(value)));
         if (!(value > 0 && std::isfinite(value) && other > 0 && std::isfinite(other)))
-          fail("{}: depth at pixel ({}, {}) is {}, which is not a valid depth for this camera",
-               file, u, v, value);
+          fail_in(file, "depth at pixel ({}, {}) is {}, which is not a valid depth for this camera",
+                  u, v, value);
         result(v, u) = other;
       }
   };

@@ -23,11 +23,11 @@ std::string read_beginning(const fs::path& path) {
   std::error_code ignored;
   // To open a pipe would wait for its writer.
   if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored))
-    fail("{}: is not a regular file", path.string());
+    fail_in(path, "is not a regular file");
   std::ifstream in(path, std::ios::binary);
   std::string bytes(kLongestHeader, '\0');
   in.read(bytes.data(), kLongestHeader);
-  if (in.bad() || (in.fail() && !in.eof())) fail("{}: cannot be read", path.string());
+  if (in.bad() || (in.fail() && !in.eof())) fail_in(path, "cannot be read");
   bytes.resize(static_cast<std::size_t>(in.gcount()));
   return bytes;
 }
@@ -35,13 +35,13 @@ std::string read_beginning(const fs::path& path) {
 void use_side_file(const DmapSideFile& side, const std::string& file, StoredDepthMap& stored) {
   const CameraModel& in_file = stored.map.camera;
   if (side.camera.width != in_file.width || side.camera.height != in_file.height)
-    fail("{}: is for {}x{} pixels, but the depth map has {}x{}", file, side.camera.width,
-         side.camera.height, in_file.width, in_file.height);
+    fail_in(file, "is for {}x{} pixels, but the depth map has {}x{}", side.camera.width,
+            side.camera.height, in_file.width, in_file.height);
   const auto differ = [](double a, double b) { return std::abs(a - b) > 1e-3; };
   if (differ(side.camera.lens.fx, in_file.lens.fx) ||
       differ(side.camera.lens.fy, in_file.lens.fy) ||
       differ(side.camera.lens.cx, in_file.lens.cx) || differ(side.camera.lens.cy, in_file.lens.cy))
-    fail("{}: its lens is not the K of the depth map", file);
+    fail_in(file, "its lens is not the K of the depth map");
   stored.map.camera = side.camera;
   stored.made_from = side.made_from;
 }
@@ -52,14 +52,14 @@ std::string fingerprint_of(const std::string& bytes) {
 
 void check_map(const DepthMap& map, const std::string& file) {
   const cv::Size size = map.depth.size();
-  if (map.depth.empty()) fail("{}: the depth map is empty", file);
+  if (map.depth.empty()) fail_in(file, "the depth map is empty");
   if (size != cv::Size(map.camera.width, map.camera.height))
-    fail("{}: the depth map is {}x{}, but its camera is {}x{}", file, size.width, size.height,
-         map.camera.width, map.camera.height);
+    fail_in(file, "the depth map is {}x{}, but its camera is {}x{}", size.width, size.height,
+            map.camera.width, map.camera.height);
   if ((!map.normal.empty() && map.normal.size() != size) ||
       (!map.confidence.empty() && map.confidence.size() != size))
-    fail("{}: normals or confidences have another size than the depths", file);
-  if (map.ids.empty()) fail("{}: the depth map has no ids", file);
+    fail_in(file, "normals or confidences have another size than the depths");
+  if (map.ids.empty()) fail_in(file, "the depth map has no ids");
 }
 
 // The image's path relative to the folder of the .dmap, as OpenMVS stores it.
@@ -68,7 +68,7 @@ std::string relative_image(const std::string& image, const fs::path& dmap) {
       fs::absolute(image).lexically_proximate(fs::absolute(dmap).parent_path());
   const std::string name = relative.generic_string();
   if (name.size() > std::numeric_limits<std::uint16_t>::max())
-    fail("{}: the image name has {} bytes, at most 65535 are possible", dmap.string(), name.size());
+    fail_in(dmap, "the image name has {} bytes, at most 65535 are possible", name.size());
   return name;
 }
 
@@ -78,7 +78,7 @@ std::pair<float, float> range_along_ray(const DepthMap& map, const std::string& 
   const auto low = static_cast<float>(ray.lambda(static_cast<double>(map.min_depth)));
   const auto high = static_cast<float>(ray.lambda(static_cast<double>(map.max_depth)));
   if (!std::isfinite(low) || !std::isfinite(high))
-    fail("{}: the depth range is {} to {} along the ray of the image centre", file, low, high);
+    fail_in(file, "the depth range is {} to {} along the ray of the image centre", low, high);
   return {low, high};
 }
 
@@ -108,7 +108,7 @@ StoredDepthMap read_dmap(const fs::path& path, DmapSide use) {
   const auto side = use == DmapSide::used ? read_dmap_side_file(path) : std::nullopt;
   if (side) {
     if (side->content != fingerprint_of(bytes))
-      fail("{}: is not the depth map to which {} belongs", file, side_file(path).string());
+      fail_in(file, "is not the depth map to which {} belongs", side_file(path).string());
     use_side_file(*side, side_file(path).string(), stored);
   }
   map.image_path = resolved_image(map.image_path, path);
@@ -132,7 +132,7 @@ DepthMap read_dmap_header(const fs::path& path, DmapSide use) {
   std::error_code error;
   const std::uint64_t wanted = in.position() + header.bytes_of_pixels();
   if (const std::uint64_t found = fs::file_size(path, error); error || found != wanted)
-    fail("{}: has {} bytes, but needs {} according to its header", file, found, wanted);
+    fail_in(file, "has {} bytes, but needs {} according to its header", found, wanted);
   StoredDepthMap stored{std::move(header.map), {}};
   if (use == DmapSide::used)
     if (const auto side = read_dmap_side_file(path))

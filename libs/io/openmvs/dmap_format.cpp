@@ -21,8 +21,8 @@ void read_pixels(ByteReader& in, cv::Mat_<Pixel>& image, const char* field) {
   in.read(flat, field);
   const auto bad = std::ranges::find_if_not(flat, [](float x) { return std::isfinite(x); });
   if (bad != flat.end())
-    fail("{}: {} at pixel {} is {}", in.file(), field,
-         static_cast<std::size_t>(bad - flat.begin()) * sizeof(float) / sizeof(Pixel), *bad);
+    fail_in(in.file(), "{} at pixel {} is {}", field,
+            static_cast<std::size_t>(bad - flat.begin()) * sizeof(float) / sizeof(Pixel), *bad);
 }
 
 cv::Size read_size(ByteReader& in, const char* field) {
@@ -30,7 +30,7 @@ cv::Size read_size(ByteReader& in, const char* field) {
   const auto width = in.read<std::uint32_t>(field);
   const auto height = in.read<std::uint32_t>(field);
   if (width < 1 || height < 1 || width > kLargestSide || height > kLargestSide)
-    fail("{}: {} is {}x{}", in.file(), field, width, height);
+    fail_in(in.file(), "{} is {}x{}", field, width, height);
   return {static_cast<int>(width), static_cast<int>(height)};
 }
 
@@ -39,8 +39,8 @@ CameraModel read_camera(ByteReader& in, cv::Size image_size) {
   in.read(std::span(k.data(), 9), "K");
   if (!k.allFinite() || !(k(0, 0) > 0) || !(k(1, 1) > 0) || k(0, 1) != 0 || k(1, 0) != 0 ||
       k(2, 0) != 0 || k(2, 1) != 0 || k(2, 2) != 1)
-    fail("{}: K is not a calibration matrix without skew: {} {} {} {} {} {} {} {} {}", in.file(),
-         k(0, 0), k(0, 1), k(0, 2), k(1, 0), k(1, 1), k(1, 2), k(2, 0), k(2, 1), k(2, 2));
+    fail_in(in.file(), "K is not a calibration matrix without skew: {} {} {} {} {} {} {} {} {}",
+            k(0, 0), k(0, 1), k(0, 2), k(1, 0), k(1, 1), k(1, 2), k(2, 0), k(2, 1), k(2, 2));
   CameraModel camera;
   camera.width = image_size.width;
   camera.height = image_size.height;
@@ -53,7 +53,7 @@ Pose read_map_pose(ByteReader& in) {
   Pose pose;
   in.read(std::span(r.data(), 9), "R");
   in.read(std::span(pose.centre.data(), 3), "C");
-  if (!pose.centre.allFinite()) fail("{}: C is not finite", in.file());
+  if (!pose.centre.allFinite()) fail_in(in.file(), "C is not finite");
   pose.rotation = checked_rotation(r, in.file() + ": R");
   return pose;
 }
@@ -101,27 +101,27 @@ std::uint64_t DmapHeader::bytes_of_pixels() const {
 
 DmapHeader parse_dmap_header(ByteReader& in) {
   if (in.take(2, "magic") != "DR")
-    fail("{}: is not a .dmap file: it does not start with DR", in.file());
+    fail_in(in.file(), "is not a .dmap file: it does not start with DR");
   const auto content = in.read<std::uint8_t>("content flags");
   if (!(content & kDepth) || content > (kDepth | kNormals | kConfidence | kViews))
-    fail("{}: content flags are {}", in.file(), content);
+    fail_in(in.file(), "content flags are {}", content);
   in.read<std::uint8_t>("padding");
   const cv::Size image_size = read_size(in, "image size");
   const cv::Size size = read_size(in, "depth map size");
   if (size.width > image_size.width || size.height > image_size.height)
-    fail("{}: the depth map ({}x{}) is larger than the image ({}x{})", in.file(), size.width,
-         size.height, image_size.width, image_size.height);
+    fail_in(in.file(), "the depth map ({}x{}) is larger than the image ({}x{})", size.width,
+            size.height, image_size.width, image_size.height);
   DmapHeader header;
   header.content = content;
   DepthMap& map = header.map;
   map.min_depth = in.read<float>("dMin");
   map.max_depth = in.read<float>("dMax");
   if (!std::isfinite(map.min_depth) || !std::isfinite(map.max_depth))
-    fail("{}: the depth range is {} to {}", in.file(), map.min_depth, map.max_depth);
+    fail_in(in.file(), "the depth range is {} to {}", map.min_depth, map.max_depth);
   map.image_path = in.take(in.read<std::uint16_t>("length of the image name"), "image name");
   const auto ids = in.read<std::uint32_t>("number of ids");
   in.require_room(ids, sizeof(std::uint32_t), "ids");
-  if (ids < 1) fail("{}: has no ids", in.file());
+  if (ids < 1) fail_in(in.file(), "has no ids");
   map.ids.resize(ids);
   in.read(std::span(map.ids), "ids");
   map.camera = read_camera(in, image_size);

@@ -163,23 +163,23 @@ void check_points(MvsFile& mvs, const std::string& file) {
   for (std::size_t i = 0; i < mvs.points.size(); ++i) {
     SparsePoint& point = mvs.points[i];
     if (!point.position.allFinite())
-      fail("{}: vertices[{}] is at ({}, {}, {})", file, i, point.position.x(), point.position.y(),
-           point.position.z());
+      fail_in(file, "vertices[{}] is at ({}, {}, {})", i, point.position.x(), point.position.y(),
+              point.position.z());
     for (const SparseView& view : point.views) {
       if (view.image >= mvs.images.size())
-        fail("{}: vertices[{}].views refers to image {}, but there are {}", file, i, view.image,
-             mvs.images.size());
+        fail_in(file, "vertices[{}].views refers to image {}, but there are {}", i, view.image,
+                mvs.images.size());
       if (!std::isfinite(view.confidence))
-        fail("{}: vertices[{}].views has the confidence {}", file, i, view.confidence);
+        fail_in(file, "vertices[{}].views has the confidence {}", i, view.confidence);
     }
     std::ranges::stable_sort(point.views, {}, &SparseView::image);
   }
   for (std::size_t i = 0; i < mvs.normals.size(); ++i)
-    if (!mvs.normals[i].allFinite()) fail("{}: verticesNormal[{}] is not finite", file, i);
+    if (!mvs.normals[i].allFinite()) fail_in(file, "verticesNormal[{}] is not finite", i);
   const auto require_length = [&](std::size_t length, const char* field) {
     if (length != 0 && length != mvs.points.size())
-      fail("{}: {} has {} elements, but there are {} vertices", file, field, length,
-           mvs.points.size());
+      fail_in(file, "{} has {} elements, but there are {} vertices", field, length,
+              mvs.points.size());
   };
   require_length(mvs.normals.size(), "verticesNormal");
   require_length(mvs.colors.size(), "verticesColor");
@@ -190,7 +190,7 @@ std::optional<OrientedBox> region_of(const MvsBox& box, const std::string& file)
   if (!(box.min.array() < box.max.array()).all()) return {};
   OrientedBox region{box.rotation, (box.min + box.max) / 2, (box.max - box.min) / 2};
   if (!region.centre.allFinite() || !region.half_extent.allFinite())
-    fail("{}: obb has an extent that is not finite", file);
+    fail_in(file, "obb has an extent that is not finite");
   // The box is symmetric, so a reflection describes the same box as a rotation.
   const double sign = region.rotation.allFinite() && region.rotation.determinant() < 0 ? -1 : 1;
   region.rotation = sign * checked_rotation(sign * region.rotation, file + ": obb rot");
@@ -217,7 +217,7 @@ void require_unique_ids(const Scene& scene, const std::string& file) {
   std::unordered_set<std::uint32_t> ids;
   for (const SceneImage& image : scene.images)
     if (!ids.insert(image.id).second)
-      fail("{}: two images have the ID {}, which names depth maps", file, image.id);
+      fail_in(file, "two images have the ID {}, which names depth maps", image.id);
 }
 
 std::string stored_path(const std::string& path, const fs::path& working_folder) {
@@ -298,9 +298,9 @@ fs::path absolute_folder(const fs::path& folder) {
 Scene read_mvs(const fs::path& path, const fs::path& working_folder) {
   const std::string file = path.string();
   MvsFile mvs = parse_mvs(read_file(path), file);
-  if (mvs.platforms.empty()) fail("{}: has no platforms", file);
+  if (mvs.platforms.empty()) fail_in(file, "has no platforms");
   if (mvs.images.size() < 2)
-    fail("{}: has {} images, at least 2 are needed", file, mvs.images.size());
+    fail_in(file, "has {} images, at least 2 are needed", mvs.images.size());
   check_points(mvs, file);
   Scene scene;
   const ImagePaths paths = find_paths(mvs, absolute_folder(working_folder), path);
@@ -323,8 +323,8 @@ void write_mvs(const fs::path& path, const Scene& scene, const fs::path& working
   for (const SceneImage& image : scene.images)
     mvs.images.push_back(image_record(image, base, intrinsics, mvs));
   if (mvs.images.size() < 2 || mvs.platforms.empty())
-    fail("{}: a scene needs two images and a calibrated camera, this scene has {} images", file,
-         mvs.images.size());
+    fail_in(file, "a scene needs two images and a calibrated camera, this scene has {} images",
+            mvs.images.size());
   mvs.points = scene.points;
   mvs.normals = scene.point_normals;
   mvs.colors = scene.point_colors;

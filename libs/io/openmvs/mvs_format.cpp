@@ -239,15 +239,13 @@ bool has_mvs_extension(const std::string& file) {
 
 MvsFile parse_mvs(std::string_view bytes, const std::string& file) {
   using namespace std::string_view_literals;
-  if (bytes.empty()) fail("{}: is empty", file);
+  if (bytes.empty()) fail_in(file, "is empty");
   if (bytes.starts_with("MVS\0"sv))
-    fail(
-        "{}: is a native OpenMVS project, which only OpenMVS can read: save it again "
-        "with OpenMVS as an interchange scene (archive type -1)",
-        file);
+    fail_in(file,
+            "is a native OpenMVS project, which only OpenMVS can read: save it again "
+            "with OpenMVS as an interchange scene (archive type -1)");
   if (!bytes.starts_with("MVSI")) {
-    if (!has_mvs_extension(file))
-      fail("{}: is not a .mvs scene: it does not start with MVSI", file);
+    if (!has_mvs_extension(file)) fail_in(file, "is not a .mvs scene: it does not start with MVSI");
     ByteReader in(bytes, file + " (no MVSI header, so read as version 0)");
     return read_body(in, 0);
   }
@@ -256,7 +254,7 @@ MvsFile parse_mvs(std::string_view bytes, const std::string& file) {
   const auto version = in.read<std::uint32_t>("version");
   in.read<std::uint32_t>("header");
   if (version < 1 || version > kMvsVersion)
-    fail("{}: version is {}, but 1 to {} are supported", file, version, kMvsVersion);
+    fail_in(file, "version is {}, but 1 to {} are supported", version, kMvsVersion);
   return read_body(in, version);
 }
 

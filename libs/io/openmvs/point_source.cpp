@@ -42,11 +42,11 @@ SparsePoint sparse_point(const PointCloud& cloud, std::size_t i, std::size_t ima
                          const std::string& file) {
   SparsePoint point;
   point.position = cloud.positions[i];
-  if (!point.position.allFinite()) fail("{}: point {} is not finite", file, i);
+  if (!point.position.allFinite()) fail_in(file, "point {} is not finite", i);
   for (std::size_t k = cloud.view_begin[i]; k < cloud.view_begin[i + 1]; ++k) {
     const std::uint32_t image = cloud.view_images[k];
     if (image >= image_count)
-      fail("{}: point {} is seen by image {}, but the scene has {}", file, i, image, image_count);
+      fail_in(file, "point {} is seen by image {}, but the scene has {}", i, image, image_count);
     point.views.push_back({image, cloud.view_weights.empty() ? 0.0f : cloud.view_weights[k]});
   }
   std::ranges::stable_sort(point.views, {}, &SparseView::image);
@@ -83,7 +83,7 @@ void use_point_cloud(Scene& scene, const LocalFrame& frame, const std::filesyste
   const std::string file = ply.string();
   PointCloud cloud = read_cloud_of_scene(frame, ply);
   if (cloud.view_begin.empty())
-    fail("{}: has no view_indices, which list the images that see a point", file);
+    fail_in(file, "has no view_indices, which list the images that see a point");
   scene.points.clear();
   scene.points.reserve(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i)

@@ -38,7 +38,6 @@ SceneFiles scene_files(const SceneOptions& options, const std::string& input,
   SceneFiles files{in_working_folder(common, input), common.working_folder,
                    in_working_folder(common, options.housing), port_choice(options)};
   files.allow_missing = options.allow_missing;
-  files.name_of = parsed.option_of;
   return files;
 }
 

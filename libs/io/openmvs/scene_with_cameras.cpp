@@ -33,10 +33,10 @@ PortCount count_ports(const Scene& scene) {
 // Error if the ports of the scene are not the demanded ones. `file`: their source.
 void check_ports(const PortCount& count, const SceneFiles& files, const fs::path& file) {
   const bool demanded = files.ports == PortChoice::required || files.ports == PortChoice::flat;
-  if (count.wet == 0 && demanded) fail("{}: gives no image a port", file.string());
+  if (count.wet == 0 && demanded) fail_in(file, "gives no image a port");
   if (count.flat < count.images && files.ports == PortChoice::flat)
-    fail("{}: only {} of {} images have a flat port, but {}", file.string(), count.flat,
-         count.images, files.name_of("camera is flat_port"));
+    fail_in(file, "only {} of {} images have a flat port, but {}", count.flat, count.images,
+            setting("camera is flat_port"));
 }
 
 // Warns if the housing file, which is not used, gives an image of the scene a port.
@@ -62,10 +62,10 @@ std::optional<Housing> attach_housing(Scene& scene, const LocalFrame& frame,
   std::error_code error;
   if (!fs::exists(file, error)) {
     if (files.ports != PortChoice::automatic)
-      fail("{}: housing file not found; {} needs a housing file (see {})", file.string(),
-           files.name_of(files.ports == PortChoice::flat ? "camera is flat_port" : "refractive"),
-           files.name_of("housing"));
-    if (!files.housing.empty()) fail("{}: housing file not found", file.string());
+      fail_in(file, "housing file not found; {} needs a housing file (see {})",
+              setting(files.ports == PortChoice::flat ? "camera is flat_port" : "refractive"),
+              setting("housing"));
+    if (!files.housing.empty()) fail_in(file, "housing file not found");
     return {};
   }
   const Housing housing = read_housing(file);
@@ -77,9 +77,8 @@ std::optional<Housing> attach_housing(Scene& scene, const LocalFrame& frame,
            count.images);
   if (count.wet > 0) return housing;
   if (!files.housing.empty() && !housing.ports.empty())
-    UnusedInput(files.allow_missing, files.name_of("allow_missing"))
-        .report(
-            fmt::format("{} {}: gives no image a port", files.name_of("housing"), file.string()));
+    UnusedInput(files.allow_missing)
+        .report(fmt::format("{} {}: gives no image a port", setting("housing"), file.string()));
   return {};
 }
 

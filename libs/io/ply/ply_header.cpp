@@ -26,7 +26,7 @@ PlyType parse_type(TextLine& line, std::string_view field) {
   const auto type = std::ranges::find_if(
       kTypes, [&](const auto& names) { return names[0] == name || names[1] == name; });
   if (type == kTypes.end())
-    fail("{}: {} is '{}', which is not a PLY type", line.where(), field, name);
+    fail_in(line.where(), "{} is '{}', which is not a PLY type", field, name);
   return static_cast<PlyType>(type - kTypes.begin());
 }
 
@@ -37,21 +37,21 @@ bool is_float(PlyType type) {
 PlyFormat parse_format(TextLine& line) {
   const std::string_view name = line.word("format");
   const std::string_view version = line.word("format version");
-  if (version != "1.0") fail("{}: PLY version is '{}', expected 1.0", line.where(), version);
+  if (version != "1.0") fail_in(line.where(), "PLY version is '{}', expected 1.0", version);
   if (name == "ascii") return PlyFormat::kAscii;
   if (name == "binary_little_endian") return PlyFormat::kLittleEndian;
   if (name == "binary_big_endian") return PlyFormat::kBigEndian;
-  fail("{}: format is '{}', which is not a PLY format", line.where(), name);
+  fail_in(line.where(), "format is '{}', which is not a PLY format", name);
 }
 
 void parse_property(TextLine& line, std::vector<PlyElement>& elements) {
-  if (elements.empty()) fail("{}: property before any element", line.where());
+  if (elements.empty()) fail_in(line.where(), "property before any element");
   PlyProperty property;
   const TextLine start = line;
   property.is_list = line.word("property type") == "list";
   if (property.is_list) {
     property.count_type = parse_type(line, "list count type");
-    if (is_float(property.count_type)) fail("{}: list counted in a float type", line.where());
+    if (is_float(property.count_type)) fail_in(line.where(), "list counted in a float type");
   } else {
     line = start;
   }
@@ -60,7 +60,7 @@ void parse_property(TextLine& line, std::vector<PlyElement>& elements) {
   auto& properties = elements.back().properties;
   for (const PlyProperty& other : properties)
     if (other.name == property.name)
-      fail("{}: property {} is declared twice", line.where(), property.name);
+      fail_in(line.where(), "property {} is declared twice", property.name);
   properties.push_back(std::move(property));
 }
 
@@ -70,10 +70,10 @@ void parse_comment(TextLine line, PlyHeader& header) {
   const std::string_view kind = line.word("comment");
   if (kind == "TextureFile") header.texture_files.emplace_back(line.file_name());
   if (kind != "geo_offset") return;
-  if (header.geo_offset) fail("{}: second geo_offset", line.where());
+  if (header.geo_offset) fail_in(line.where(), "second geo_offset");
   Eigen::Vector3d& offset = header.geo_offset.emplace();
   for (double& coordinate : offset) coordinate = line.number<double>("geo_offset");
-  if (!line.rest().empty()) fail("{}: unexpected '{}'", line.where(), line.rest());
+  if (!line.rest().empty()) fail_in(line.where(), "unexpected '{}'", line.rest());
 }
 
 // The smallest number of bytes of one row.
@@ -89,7 +89,7 @@ std::uint64_t min_row_bytes(const PlyElement& element, PlyFormat format) {
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& file) {
   const std::string_view text = without_byte_order_mark(bytes);
   if (!text.starts_with("ply\n") && !text.starts_with("ply\r\n"))
-    fail("{}: is not a PLY file (does not start with 'ply')", file);
+    fail_in(file, "is not a PLY file (does not start with 'ply')");
   TextReader reader(bytes, file);
   PlyHeader header;
   bool has_format = false;
@@ -99,7 +99,7 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& file) {
     if (keyword == "comment") parse_comment(*line, header);
     if (keyword == "comment" || keyword == "obj_info") continue;
     if (keyword == "format") {
-      if (has_format) fail("{}: second format line", line->where());
+      if (has_format) fail_in(line->where(), "second format line");
       header.format = parse_format(*line);
       has_format = true;
     } else if (keyword == "element") {
@@ -110,16 +110,16 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& file) {
     } else if (keyword == "property") {
       parse_property(*line, header.elements);
     } else if (keyword != "end_header") {
-      fail("{}: '{}' is not a PLY header keyword", line->where(), keyword);
+      fail_in(line->where(), "'{}' is not a PLY header keyword", keyword);
     }
-    if (!line->rest().empty()) fail("{}: unexpected '{}'", line->where(), line->rest());
+    if (!line->rest().empty()) fail_in(line->where(), "unexpected '{}'", line->rest());
     if (keyword == "end_header") {
-      if (!has_format) fail("{}: the PLY header has no format line", file);
+      if (!has_format) fail_in(file, "the PLY header has no format line");
       header.body = reader.position();
       return header;
     }
   }
-  fail("{}: truncated: the PLY header has no end_header", file);
+  fail_in(file, "truncated: the PLY header has no end_header");
 }
 
 PlyBody::PlyBody(std::string_view bytes, const std::string& file, const PlyHeader& header)
@@ -128,17 +128,17 @@ PlyBody::PlyBody(std::string_view bytes, const std::string& file, const PlyHeade
       text_(bytes.substr(header.body)) {
   // Without the final newline, a truncated last number could not be recognised.
   if (format_ == PlyFormat::kAscii && !text_.empty() && text_.back() != '\n')
-    fail("{}: truncated: the last line has no end", file);
+    fail_in(file, "truncated: the last line has no end");
 }
 
 void require_rows(const PlyElement& element, PlyFormat format, std::uint64_t left,
                   const std::string& file) {
   const std::uint64_t row = min_row_bytes(element, format);
   if (row == 0 && element.count > 0)
-    fail("{}: element {} has {} rows without properties", file, element.name, element.count);
+    fail_in(file, "element {} has {} rows without properties", element.name, element.count);
   if (row > 0 && element.count > left / row)
-    fail("{}: truncated: element {} should have {} rows, but only {} bytes are left", file,
-         element.name, element.count, left);
+    fail_in(file, "truncated: element {} should have {} rows, but only {} bytes are left",
+            element.name, element.count, left);
 }
 
 void PlyBody::require_rows(const PlyElement& element) const {
@@ -156,7 +156,7 @@ T PlyBody::binary(const std::string& name) {
 
 double PlyBody::ascii(PlyType type, const std::string& name) {
   const std::string_view token = take_token(text_);
-  if (token.empty()) fail("{}: truncated: no more values at {}", reader_.file(), name);
+  if (token.empty()) fail_in(reader_.file(), "truncated: no more values at {}", name);
   const std::optional<double> parsed = parse_number<double>(token);
   const double value = parsed.value_or(0);
   const bool good =
@@ -166,7 +166,7 @@ double PlyBody::ascii(PlyType type, const std::string& name) {
                (value >= static_cast<double>(Limits::lowest()) &&
                 value <= static_cast<double>(Limits::max()) && value == std::trunc(value));
       });
-  if (!good) fail("{}: {} is '{}', which is not a value of its type", reader_.file(), name, token);
+  if (!good) fail_in(reader_.file(), "{} is '{}', which is not a value of its type", name, token);
   return value;
 }
 
@@ -181,14 +181,14 @@ std::size_t PlyBody::list_size(const PlyProperty& property) {
   const std::size_t left =
       format_ == PlyFormat::kAscii ? text_.size() / 2 : reader_.left() / ply_size(property.type);
   if (size < 0 || size > static_cast<double>(left))
-    fail("{}: list {} should have {} values, which the file cannot contain", reader_.file(),
-         property.name, size);
+    fail_in(reader_.file(), "list {} should have {} values, which the file cannot contain",
+            property.name, size);
   return static_cast<std::size_t>(size);
 }
 
 void PlyBody::require_end() const {
   const bool more = format_ == PlyFormat::kAscii ? !trimmed(text_).empty() : reader_.left() > 0;
-  if (more) fail("{}: malformed: data follow the last element", reader_.file());
+  if (more) fail_in(reader_.file(), "malformed: data follow the last element");
 }
 
 }  // namespace axial::io

@@ -12,7 +12,7 @@ namespace {
 // Calls `read` for each row of the element vertex.
 void for_each_vertex(PlyStream& stream, const std::function<bool(PlyBody&)>& read) {
   const PlyElement* vertices = find_element(stream.header(), "vertex");
-  if (!vertices) fail("{}: has no element vertex", stream.file());
+  if (!vertices) fail_in(stream.file(), "has no element vertex");
   for (const PlyElement& element : stream.header().elements) {
     if (&element == vertices) return stream.for_each_row(read);
     stream.for_each_row([rows = PlyRows(element)](PlyBody& body) {
@@ -28,7 +28,7 @@ void read_cloud_portions(const std::filesystem::path& path, const LocalFrame* fr
                          std::size_t points, const CloudPortionSink& sink) {
   PlyStream stream(path);
   const PlyElement* vertices = find_element(stream.header(), "vertex");
-  if (!vertices) fail("{}: has no element vertex", path.string());
+  if (!vertices) fail_in(path, "has no element vertex");
   VertexRows rows(*vertices, path.string(), shift_into(frame, stream.header()));
   PointCloud portion = rows.empty_cloud();
   for_each_vertex(stream, [&](PlyBody& body) {
@@ -44,7 +44,7 @@ PlyPlace ply_place(const std::filesystem::path& path) {
   PlyPlace place;
   if (stream.header().geo_offset) place.frame.origin = *stream.header().geo_offset;
   const PlyElement* vertices = find_element(stream.header(), "vertex");
-  if (!vertices) fail("{}: has no element vertex", path.string());
+  if (!vertices) fail_in(path, "has no element vertex");
   if (vertices->count == 0) return place;
   VertexRows rows(*vertices, path.string(), {});
   for_each_vertex(stream, [&](PlyBody& body) {

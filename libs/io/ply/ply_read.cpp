@@ -26,14 +26,14 @@ void read_faces(PlyBody& body, const PlyElement& element, const std::string& fil
   double unseen = 0;
   if (!rows.store("vertex_indices", corners) && !rows.store("vertex_index", corners) &&
       element.count > 0)
-    fail("{}: element face has no list vertex_indices", file);
+    fail_in(file, "element face has no list vertex_indices");
   const bool marked = rows.store("unseen", unseen);
   if (marked) mesh.unseen.resize(mesh.faces.size());  // strips have no marks
   mesh.faces.reserve(mesh.faces.size() + element.count);
   for (std::size_t i = 0; i < element.count; ++i) {
     rows.read(body);
     if (corners.size() < 3)
-      fail("{}: face {} has {} corners, at least 3 are needed", file, i, corners.size());
+      fail_in(file, "face {} has {} corners, at least 3 are needed", i, corners.size());
     for (std::size_t k = 2; k < corners.size(); ++k)
       mesh.faces.push_back({as_index(corners[0], "vertex_indices", i, file),
                             as_index(corners[k - 1], "vertex_indices", i, file),
@@ -71,15 +71,14 @@ void check_faces(const Mesh& mesh, const std::string& file) {
   for (const auto& face : mesh.faces)
     for (const std::uint32_t corner : face)
       if (corner >= mesh.vertices.size())
-        fail("{}: a face refers to vertex {}, but there are {}", file, corner,
-             mesh.vertices.size());
+        fail_in(file, "a face refers to vertex {}, but there are {}", corner, mesh.vertices.size());
 }
 
 // Reads the elements of a file in their order: read(body, element) reads the rows of one.
 template <class Read>
 void read_elements(const std::string& bytes, const std::string& file, const PlyHeader& header,
                    Read read) {
-  if (!find_element(header, "vertex")) fail("{}: has no element vertex", file);
+  if (!find_element(header, "vertex")) fail_in(file, "has no element vertex");
   PlyBody body(bytes, file, header);
   for (const PlyElement& element : header.elements) read(body, element);
   body.require_end();
@@ -101,7 +100,7 @@ PointCloud read_cloud(const std::filesystem::path& path, const LocalFrame* frame
 void require_faces(const PlyHeader& header, const std::string& file) {
   if (find_element(header, "vertex") && !find_element(header, "face") &&
       !find_element(header, "tristrips"))
-    fail("{}: is not a mesh: it has no element face", file);
+    fail_in(file, "is not a mesh: it has no element face");
 }
 
 Mesh read_mesh(const std::filesystem::path& path, const LocalFrame* frame) {

@@ -10,7 +10,7 @@ namespace {
 
 void require_finite(const Eigen::Vector3f& v, const char* field, std::size_t row,
                     const std::string& file) {
-  if (!v.allFinite()) fail("{}: vertex {} has a {} that is not finite", file, row, field);
+  if (!v.allFinite()) fail_in(file, "vertex {} has a {} that is not finite", row, field);
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ void skip_rows(PlyBody& body, const PlyElement& element) {
 
 std::uint32_t as_index(double value, const char* field, std::size_t row, const std::string& file) {
   if (!(value >= 0 && value <= 4294967295.0) || value != std::trunc(value))
-    fail("{}: {} of row {} contains {}, which is not an index", file, field, row, value);
+    fail_in(file, "{} of row {} contains {}, which is not an index", field, row, value);
   return static_cast<std::uint32_t>(value);
 }
 
@@ -82,7 +82,7 @@ VertexRows::VertexRows(const PlyElement& element, std::string file,
   }
   has_views_ = rows_.store("view_indices", indices_);
   has_weights_ = rows_.store("view_weights", weights_);
-  if (!has(kX)) fail("{}: element vertex has no x, y or z", file_);
+  if (!has(kX)) fail_in(file_, "element vertex has no x, y or z");
 }
 
 PointCloud VertexRows::empty_cloud() const {
@@ -103,8 +103,8 @@ Rgb VertexRows::color() const {
 
 void VertexRows::append_views(PointCloud& cloud) const {
   if (has_weights_ && weights_.size() != indices_.size())
-    fail("{}: vertex {} has {} view_indices but {} view_weights", file_, row_, indices_.size(),
-         weights_.size());
+    fail_in(file_, "vertex {} has {} view_indices but {} view_weights", row_, indices_.size(),
+            weights_.size());
   for (const double value : indices_)
     cloud.view_images.push_back(as_index(value, "view_indices", row_, file_));
   if (has_weights_)

@@ -16,10 +16,10 @@ constexpr std::size_t kLongestRow = std::size_t{1} << 20;
 
 PlyStream::PlyStream(const std::filesystem::path& path) : file_(path.string()) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) fail("{}: is not a regular file", file_);
+  if (!std::filesystem::is_regular_file(path, error)) fail_in(file_, "is not a regular file");
   size_ = std::filesystem::file_size(path, error);
   in_.open(path, std::ios::binary);
-  if (error || !in_) fail("{}: cannot be read", file_);
+  if (error || !in_) fail_in(file_, "cannot be read");
   fill();
   header_ = parse_ply_header(buffer_, file_);
   position_ = header_.body;
@@ -34,7 +34,7 @@ void PlyStream::fill() {
   const std::uint64_t wanted = std::min<std::uint64_t>(kBuffer - kept, size_ - end_);
   buffer_.resize(kept + wanted);
   if (!in_.read(buffer_.data() + kept, static_cast<std::streamsize>(wanted)))
-    fail("{}: cannot be read", file_);
+    fail_in(file_, "cannot be read");
   end_ += wanted;
 }
 

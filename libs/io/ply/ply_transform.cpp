@@ -76,7 +76,7 @@ void move_vertex(const Vertices& vertices, std::uint64_t index, const std::strin
   const bool is_float =
       vertices.element->properties[vertices.position[0]].type == PlyType::kFloat32;
   if (!x.allFinite() || (is_float && !x.cast<float>().allFinite()))
-    fail("{}: vertex {} has no finite position after the transformation", file, index);
+    fail_in(file, "vertex {} has no finite position after the transformation", index);
   set(row, vertices.position, x);
   if (vertices.normal[0] != kAbsent)
     set(row, vertices.normal, vertices.similarity.rotation * get(row, vertices.normal));
@@ -92,7 +92,7 @@ void check_corners(const PlyElement& face, const Row& row, std::uint64_t vertice
       continue;
     for (const double corner : row[i])
       if (!(corner >= 0 && corner < static_cast<double>(vertices)))
-        fail("{}: a face refers to vertex {}, but there are {}", file, corner, vertices);
+        fail_in(file, "a face refers to vertex {}, but there are {}", corner, vertices);
   }
 }
 
@@ -113,11 +113,11 @@ std::string new_header(std::string_view text, const std::string& geo) {
 
 Vertices vertices_of(const PlyHeader& header, const std::string& file) {
   const auto found = std::ranges::find(header.elements, "vertex", &PlyElement::name);
-  if (found == header.elements.end() || found->count == 0) fail("{}: has no vertices", file);
+  if (found == header.elements.end() || found->count == 0) fail_in(file, "has no vertices");
   Vertices vertices;
   vertices.element = &*found;
   vertices.position = columns_of(*found, {"x", "y", "z"});
-  if (vertices.position[0] == kAbsent) fail("{}: its vertices have no float x, y and z", file);
+  if (vertices.position[0] == kAbsent) fail_in(file, "its vertices have no float x, y and z");
   vertices.normal = columns_of(*found, {"nx", "ny", "nz"});
   vertices.error = columns_of(*found, {"error", "error", "error"});
   return vertices;

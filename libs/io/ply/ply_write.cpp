@@ -22,19 +22,19 @@ constexpr const char* kNormal = "property float32 nx\nproperty float32 ny\nprope
 
 void require_length(std::size_t length, std::size_t points, const char* field,
                     const std::string& file) {
-  if (length != points) fail("{}: the cloud has {} {} for {} points", file, length, field, points);
+  if (length != points) fail_in(file, "the cloud has {} {} for {} points", length, field, points);
 }
 
 void check_views(const PointCloud& cloud, std::size_t before, const std::string& file) {
-  if (cloud.view_begin.empty()) fail("{}: the cloud has no view lists", file);
+  if (cloud.view_begin.empty()) fail_in(file, "the cloud has no view lists");
   require_length(cloud.view_begin.size() - 1, cloud.size(), "view lists", file);
   if (cloud.view_begin.back() > cloud.view_images.size())
-    fail("{}: the cloud's view lists end at {}, but there are {} views", file,
-         cloud.view_begin.back(), cloud.view_images.size());
+    fail_in(file, "the cloud's view lists end at {}, but there are {} views",
+            cloud.view_begin.back(), cloud.view_images.size());
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (cloud.views_of(i).size() > 255)
-      fail("{}: point {} has {} views, but the format counts them in a byte (at most 255)", file,
-           before + i, cloud.views_of(i).size());
+      fail_in(file, "point {} has {} views, but the format counts them in a byte (at most 255)",
+              before + i, cloud.views_of(i).size());
 }
 
 void write_vector(ByteWriter& out, const Eigen::Vector3f& v) {
@@ -120,7 +120,7 @@ struct CloudWriter::File {
 
   void require_good() const {
     if (!stream)
-      fail("{}: cannot be written: {}", name(), errno ? std::strerror(errno) : "write failed");
+      fail_in(name(), "cannot be written: {}", errno ? std::strerror(errno) : "write failed");
   }
 };
 
@@ -161,13 +161,13 @@ void CloudWriter::add_file(const std::filesystem::path& written, std::size_t poi
   std::ifstream in(written, std::ios::binary);
   in.read(bytes.data(), static_cast<std::streamsize>(header.size()));
   if (!in || bytes.compare(0, header.size(), header) != 0)
-    fail("{}: is not a cloud of {} points with the properties of {}", written.string(), points,
-         file_->name());
+    fail_in(written, "is not a cloud of {} points with the properties of {}", points,
+            file_->name());
   while (in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) || in.gcount() > 0) {
     file_->stream.write(bytes.data(), in.gcount());
     file_->require_good();
   }
-  if (in.bad()) fail("{}: cannot be read", written.string());
+  if (in.bad()) fail_in(written, "cannot be read");
   file_->points += points;
 }
 

@@ -85,7 +85,7 @@ std::string GltfFile::read_bytes(std::uint64_t first, std::uint64_t size) const 
   std::ifstream in(path_, std::ios::binary);
   std::string bytes(size, '\0');
   in.seekg(static_cast<std::streamoff>(first));
-  if (!in.read(bytes.data(), static_cast<std::streamsize>(size))) fail("{}: cannot be read", name_);
+  if (!in.read(bytes.data(), static_cast<std::streamsize>(size))) fail_in(name_, "cannot be read");
   return bytes;
 }
 
@@ -93,16 +93,16 @@ std::string GltfFile::read_json_part() {
   std::error_code error;
   if (!fs::is_regular_file(path_, error)) return read_file(path_);  // says why
   file_bytes_ = fs::file_size(path_, error);
-  if (error) fail("{}: cannot be read", name_);
+  if (error) fail_in(name_, "cannot be read");
   if (file_bytes_ < 4 || read_bytes(0, 4) != "glTF") {
     if (lower_extension(path_) == ".glb")
-      fail("{}: is not a valid GLB: it does not begin with 'glTF'", name_);
+      fail_in(name_, "is not a valid GLB: it does not begin with 'glTF'");
     return read_file(path_, kLargestJson);
   }
   find_chunks(file_bytes_);
   if (json_chunk_->size > kLargestJson)
-    fail("{}: its JSON part has {} bytes, more than {} are not read", name_, json_chunk_->size,
-         kLargestJson);
+    fail_in(name_, "its JSON part has {} bytes, more than {} are not read", json_chunk_->size,
+            kLargestJson);
   return read_bytes(json_chunk_->first, json_chunk_->size);
 }
 
@@ -110,34 +110,34 @@ std::string GltfFile::read_json_part() {
 // front of its bytes.
 void GltfFile::find_chunks(std::uint64_t size) {
   constexpr std::uint32_t kJson = 0x4E4F534A, kBinary = 0x004E4942;
-  if (size < 12) fail("{}: truncated: a GLB has at least 12 bytes", name_);
+  if (size < 12) fail_in(name_, "truncated: a GLB has at least 12 bytes");
   const std::string header = read_bytes(0, 12);
   const auto version = value_of<std::uint32_t>(header, 4);
   const auto length = value_of<std::uint32_t>(header, 8);
-  if (version != 2) fail("{}: is a GLB of version {}, but only version 2 is read", name_, version);
+  if (version != 2) fail_in(name_, "is a GLB of version {}, but only version 2 is read", version);
   if (length != size)
-    fail("{}: {}: its header states {} bytes, but the file has {}", name_,
-         length > size ? "truncated" : "malformed", length, size);
+    fail_in(name_, "{}: its header states {} bytes, but the file has {}",
+            length > size ? "truncated" : "malformed", length, size);
   for (std::uint64_t at = 12; at < size;) {
-    if (size - at < 8) fail("{}: malformed: {} bytes follow the last chunk", name_, size - at);
+    if (size - at < 8) fail_in(name_, "malformed: {} bytes follow the last chunk", size - at);
     const std::string chunk = read_bytes(at, 8);
     const Chunk place{at + 8, value_of<std::uint32_t>(chunk, 0)};
     const auto type = value_of<std::uint32_t>(chunk, 4);
     if (place.size > size - place.first)
-      fail("{}: truncated: a chunk of {} bytes ends outside of the file", name_, place.size);
-    if (!json_chunk_ && type != kJson) fail("{}: the first chunk is not JSON", name_);
+      fail_in(name_, "truncated: a chunk of {} bytes ends outside of the file", place.size);
+    if (!json_chunk_ && type != kJson) fail_in(name_, "the first chunk is not JSON");
     if (!json_chunk_)
       json_chunk_ = place;
     else if (type == kBinary && !binary_)
       binary_ = place;
     at = place.first + place.size;
   }
-  if (!json_chunk_) fail("{}: truncated: the GLB has no JSON chunk", name_);
+  if (!json_chunk_) fail_in(name_, "truncated: the GLB has no JSON chunk");
 }
 
 void GltfFile::require_known_format() const {
   const auto asset = root().object("asset");
-  if (!asset) fail("{}: is not a glTF file: it has no asset", name_);
+  if (!asset) fail_in(name_, "is not a glTF file: it has no asset");
   const std::string version = asset->text("version").value_or("");
   if (!version.starts_with("2.")) {
     if (version.empty()) asset->refuse("has no version");
@@ -145,7 +145,7 @@ void GltfFile::require_known_format() const {
   }
   for (const std::string& extension : root().texts("extensionsRequired"))
     if (std::ranges::find(kKnownExtensions, extension) == kKnownExtensions.end())
-      fail("{}: requires the extension {}, which is not supported", name_, extension);
+      fail_in(name_, "requires the extension {}, which is not supported", extension);
 }
 
 GltfObject GltfFile::root() const {
@@ -155,13 +155,13 @@ GltfObject GltfFile::root() const {
 std::size_t GltfFile::size(const char* list) const {
   const auto found = json_->find(list);
   if (found == json_->end()) return 0;
-  if (!found->is_array()) fail("{}: {} is not a list", name_, list);
+  if (!found->is_array()) fail_in(name_, "{} is not a list", list);
   return found->size();
 }
 
 GltfObject GltfFile::item(const char* list, std::size_t index) const {
   const std::size_t count = size(list);
-  if (index >= count) fail("{}: {}[{}] does not exist: there are {}", name_, list, index, count);
+  if (index >= count) fail_in(name_, "{}[{}] does not exist: there are {}", list, index, count);
   return {name_, fmt::format("{}[{}]", list, index), (*json_)[list][index]};
 }
 

@@ -60,11 +60,11 @@ auto list_of(std::optional<Item> (*item)(const Json&)) {
 
 GltfObject::GltfObject(const std::string& file, std::string name, const Json& json)
     : file_(&file), name_(std::move(name)), json_(&json) {
-  if (!json.is_object()) fail("{}: {} is not an object", file, name_);
+  if (!json.is_object()) fail_in(file, "{} is not an object", name_);
 }
 
 void GltfObject::refuse(std::string_view text) const {
-  fail("{}: {} {}", *file_, name_, text);
+  fail_in(*file_, "{} {}", name_, text);
 }
 
 const Json* GltfObject::value(const char* key) const {
@@ -78,7 +78,7 @@ auto GltfObject::read(const char* key, std::string_view kind, Read take) const
   const Json* json = value(key);
   if (!json) return {};
   auto result = take(*json);
-  if (!result) fail("{}: {}.{} is {}, which is not {}", *file_, name_, key, shortened(*json), kind);
+  if (!result) fail_in(*file_, "{}.{} is {}, which is not {}", name_, key, shortened(*json), kind);
   return result;
 }
 
@@ -88,7 +88,7 @@ std::optional<std::size_t> GltfObject::index(const char* key) const {
 
 std::size_t GltfObject::needed_index(const char* key) const {
   const auto number = index(key);
-  if (!number) fail("{}: {} has no {}", *file_, name_, key);
+  if (!number) fail_in(*file_, "{} has no {}", name_, key);
   return *number;
 }
 
@@ -139,7 +139,7 @@ std::vector<GltfObject> GltfObject::objects(const char* key) const {
   std::vector<GltfObject> result;
   const Json* json = value(key);
   if (!json) return result;
-  if (!json->is_array()) fail("{}: {}.{} is not a list", *file_, name_, key);
+  if (!json->is_array()) fail_in(*file_, "{}.{} is not a list", name_, key);
   for (const Json& entry : *json)
     result.emplace_back(*file_, fmt::format("{}.{}[{}]", name_, key, result.size()), entry);
   return result;

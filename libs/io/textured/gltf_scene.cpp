@@ -267,8 +267,8 @@ std::vector<std::uint32_t> corners_of(GltfFile& file, const GltfPrimitive& primi
   for (std::size_t i = 0; i < values.count; ++i) {
     corners.push_back(static_cast<std::uint32_t>(values.at(i)));
     if (corners.back() >= vertices)
-      fail("{}: {}: a face refers to vertex {}, but there are {}", file.name(), primitive.name,
-           corners.back(), vertices);
+      fail_in(file.name(), "{}: a face refers to vertex {}, but there are {}", primitive.name,
+              corners.back(), vertices);
   }
   return corners;
 }
@@ -282,8 +282,8 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(GltfFile& file,
   std::vector<std::array<std::uint32_t, 3>> faces;
   if (primitive.mode == 4) {
     if (c.size() % 3 != 0)
-      fail("{}: {}: the number of corners, {}, is no multiple of 3", file.name(), primitive.name,
-           c.size());
+      fail_in(file.name(), "{}: the number of corners, {}, is no multiple of 3", primitive.name,
+              c.size());
     faces.reserve(c.size() / 3);
     for (std::size_t i = 0; i < c.size(); i += 3) faces.push_back({c[i], c[i + 1], c[i + 2]});
     return faces;
@@ -304,15 +304,16 @@ std::vector<Eigen::Vector2d> coordinates_of(GltfFile& file, const GltfPrimitive&
   const auto set = std::ranges::find(primitive.coordinates, material.coordinates,
                                      &std::pair<std::size_t, std::size_t>::first);
   if (set == primitive.coordinates.end())
-    fail("{}: {} has no TEXCOORD_{}, which its texture needs", file.name(), primitive.name,
-         material.coordinates);
+    fail_in(file.name(), "{} has no TEXCOORD_{}, which its texture needs", primitive.name,
+            material.coordinates);
   const GltfValues values = file.values(set->second, "VEC2", {5121, 5123, 5126});
   if (values.component_type != 5126 && !values.normalized)
-    fail("{}: accessors[{}] has texture coordinates of integers that are not normalized",
-         file.name(), set->second);
+    fail_in(file.name(),
+            "accessors[{}] has texture coordinates of integers that are not normalized",
+            set->second);
   if (values.count != vertices)
-    fail("{}: {} has {} positions, but {} texture coordinates", file.name(), primitive.name,
-         vertices, values.count);
+    fail_in(file.name(), "{} has {} positions, but {} texture coordinates", primitive.name,
+            vertices, values.count);
   const bool is_moved = !material.turn.isIdentity(0) || !material.offset.isZero(0);
   std::vector<Eigen::Vector2d> result;
   result.reserve(vertices);
@@ -320,7 +321,7 @@ std::vector<Eigen::Vector2d> coordinates_of(GltfFile& file, const GltfPrimitive&
     Eigen::Vector2d uv(values.at(i, 0), values.at(i, 1));
     if (is_moved) uv = material.turn * uv + material.offset;
     if (!uv.allFinite())
-      fail("{}: {} has a texture coordinate that is not finite", file.name(), primitive.name);
+      fail_in(file.name(), "{} has a texture coordinate that is not finite", primitive.name);
     result.push_back(uv);
   }
   return result;
@@ -331,8 +332,8 @@ GltfValues colors_of(GltfFile& file, std::size_t accessor, std::size_t vertices)
   GltfValues values = file.values(accessor, has_alpha ? "VEC4" : "VEC3", {5121, 5123, 5126});
   values.normalized = true;
   if (values.count != vertices)
-    fail("{}: accessors[{}] has {} colours for {} vertices", file.name(), accessor, values.count,
-         vertices);
+    fail_in(file.name(), "accessors[{}] has {} colours for {} vertices", accessor, values.count,
+            vertices);
   return values;
 }
 

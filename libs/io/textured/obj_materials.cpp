@@ -70,7 +70,7 @@ constexpr std::array<MapOption, 11> kMapOptions{{{"-o", 3},
 
 void set_pair(Eigen::Vector2d& pair, const std::vector<double>& numbers, const TextLine& line,
               std::string_view option) {
-  if (numbers.empty()) fail("{}: {} has no number", line.where(), option);
+  if (numbers.empty()) fail_in(line.where(), "{} has no number", option);
   for (std::size_t k = 0; k < std::min<std::size_t>(numbers.size(), 2); ++k)
     pair[static_cast<Eigen::Index>(k)] = numbers[k];
 }
@@ -79,7 +79,7 @@ void read_map_option(const MapOption& option, TextLine& line, ObjMaterial& mater
   if (option.word) {
     const std::string value = lower_case(std::string(line.word(option.name)));
     if (value != "on" && value != "off")
-      fail("{}: {} is '{}', expected on or off", line.where(), option.name, value);
+      fail_in(line.where(), "{} is '{}', expected on or off", option.name, value);
     if (option.name == "-clamp" && value == "on") material.texture->wrap.fill(Wrap::clamp);
     return;
   }
@@ -88,7 +88,7 @@ void read_map_option(const MapOption& option, TextLine& line, ObjMaterial& mater
   if (option.name == "-s") set_pair(material.scale, numbers, line, option.name);
   const bool turbulent = std::ranges::any_of(numbers, [](double value) { return value != 0; });
   if (option.name == "-t" && turbulent)
-    fail("{}: the option -t of map_Kd is not supported", line.where());
+    fail_in(line.where(), "the option -t of map_Kd is not supported");
 }
 
 // `line`: after the key map_Kd.
@@ -105,7 +105,7 @@ void read_map(TextLine line, const fs::path& folder, ObjMaterial& material) {
     read_map_option(*option, line, material);
   }
   std::string name(line.file_name());
-  if (name.empty()) fail("{}: map_Kd names no file", line.where());
+  if (name.empty()) fail_in(line.where(), "map_Kd names no file");
   const bool quoted = name.size() > 2 && name.front() == '"' && name.back() == '"';
   if (quoted && !file_beside(folder, name)) name = name.substr(1, name.size() - 2);
   material.texture->file = path_beside(folder, name);

@@ -30,7 +30,7 @@ class GltfReader {
     make_room();
     for (const GltfInstance& instance : scene_.instances)
       for (const GltfPrimitive& primitive : instance.primitives) add(primitive, instance);
-    if (result_.mesh.faces.empty()) fail("{}: the mesh has no faces", file_.name());
+    if (result_.mesh.faces.empty()) fail_in(file_.name(), "the mesh has no faces");
     result_.mesh.vertices = placed_in(frame, positions_, scene_.geo_offset, file_.name());
     textures_.finish(result_);
     return std::move(result_);
@@ -41,7 +41,7 @@ class GltfReader {
  private:
   void make_room() {
     const GltfCounts counts = count_items(file_, scene_);
-    if (counts.vertices > 0xFFFFFFFFu) fail("{}: has {} vertices", file_.name(), counts.vertices);
+    if (counts.vertices > 0xFFFFFFFFu) fail_in(file_.name(), "has {} vertices", counts.vertices);
     // The counts of a damaged file may be huge. What follows is checked when it is read.
     const std::uint64_t bound = file_.buffer_bytes() + file_.json_bytes();
     if (counts.vertices > bound || counts.faces > bound) return;
@@ -56,7 +56,7 @@ class GltfReader {
   void add(const GltfPrimitive& primitive, const GltfInstance& instance) {
     const std::size_t before = positions_.size();
     const GltfValues positions = file_.values(primitive.positions, "VEC3", {5126});
-    if (positions.count > 0xFFFFFFFFu - before) fail("{}: has too many vertices", file_.name());
+    if (positions.count > 0xFFFFFFFFu - before) fail_in(file_.name(), "has too many vertices");
     const std::vector<std::array<std::uint32_t, 3>> faces =
         triangles_of(file_, primitive, positions.count);
     for (std::size_t i = 0; i < positions.count; ++i) {
@@ -176,7 +176,7 @@ MeshPlace place_of_gltf(const fs::path& path) {
       const Eigen::Vector4d at(positions.at(0, 0), positions.at(0, 1), positions.at(0, 2), 1);
       place.first_vertex = place.frame.to_world((instance.placement * at).head<3>());
       place.is_float = !instance.is_moved;
-      if (!place.first_vertex.allFinite()) fail("{}: vertex 0 is not finite", file.name());
+      if (!place.first_vertex.allFinite()) fail_in(file.name(), "vertex 0 is not finite");
       return place;
     }
   return place;

@@ -63,7 +63,7 @@ class ObjReader {
     make_room(count_obj_items(path_));
     read_points(bytes);
     read_faces(bytes);
-    if (result_.mesh.faces.empty()) fail("{}: the mesh has no faces", file_);
+    if (result_.mesh.faces.empty()) fail_in(file_, "the mesh has no faces");
     result_.mesh.vertices = placed_in(frame, positions_, offset_, file_);
     if (!textured_) result_.mesh.colors = vertex_colors();
     textures_.finish(result_);
@@ -85,7 +85,7 @@ class ObjReader {
   };
 
   void make_room(const ObjCounts& counts) {
-    if (counts.vertices > 0xFFFFFFFFu) fail("{}: has {} vertices", file_, counts.vertices);
+    if (counts.vertices > 0xFFFFFFFFu) fail_in(file_, "has {} vertices", counts.vertices);
     positions_.reserve(counts.vertices);
     if (!textured_ && counts.colors == counts.vertices) colors_.reserve(counts.vertices);
     result_.mesh.faces.reserve(counts.faces);
@@ -112,7 +112,7 @@ class ObjReader {
       } else if (textured_ && key == "mtllib") {
         read_material_files(line->file_name());
       } else if (key == "surf" || key == "call") {
-        fail("{}: '{}' is not supported", line->where(), key);
+        fail_in(line->where(), "'{}' is not supported", key);
       }
     }
   }
@@ -188,7 +188,7 @@ class ObjReader {
                             : *number < 0 ? static_cast<std::int64_t>(so_far) + *number
                                           : *number - 1;
     if (at < 0 || static_cast<std::uint64_t>(at) >= all)
-      fail("{}: the {} '{}' does not exist; there are {}", line.where(), list, word, all);
+      fail_in(line.where(), "the {} '{}' does not exist; there are {}", list, word, all);
     return static_cast<std::size_t>(at);
   }
 
@@ -221,7 +221,7 @@ class ObjReader {
     std::array<Eigen::Vector2d, 3> uv{{{0, 0}, {1, 0}, {0, 1}}};
     if (used.material.texture) {
       for (std::size_t k = 0; k < 3; ++k) {
-        if (!corners[k].uv) fail("{}: a corner has no texture coordinate", line.where());
+        if (!corners[k].uv) fail_in(line.where(), "a corner has no texture coordinate");
         uv[k] = used.material.scale.cwiseProduct(uv_[*corners[k].uv]) + used.material.offset;
       }
     } else if (!used.texture) {
@@ -238,7 +238,7 @@ class ObjReader {
     }
     const auto found = materials_.find(name);
     if (found == materials_.end())
-      fail("{}: there is no material '{}' in its MTL files", line.where(), name);
+      fail_in(line.where(), "there is no material '{}' in its MTL files", name);
     material_ = &found->second;
   }
 
@@ -355,7 +355,7 @@ std::vector<Eigen::Vector3f> placed_in(const std::optional<LocalFrame>& frame,
   for (const Eigen::Vector3d& position : stored) {
     positions.push_back((position + shift).cast<float>());
     if (!positions.back().allFinite())
-      fail("{}: vertex {} is not finite or too large", file, positions.size() - 1);
+      fail_in(file, "vertex {} is not finite or too large", positions.size() - 1);
   }
   return positions;
 }

@@ -128,8 +128,8 @@ void TextureSet::finish(TexturedMesh& mesh) {
     if (texture.copies.area() > 1)
       pixels += static_cast<double>(texture.copies.area()) * texture.size.area();
   if (pixels > kMostPixels)
-    fail("{}: its repeated textures have {:.0f} pixels, more than {:.0f} are not supported", file_,
-         pixels, kMostPixels);
+    fail_in(file_, "its repeated textures have {:.0f} pixels, more than {:.0f} are not supported",
+            pixels, kMostPixels);
   for (Texture& texture : textures_) {
     if (texture.copies.area() > 1 && !texture.image.empty())
       texture.image = with_copies(texture.image, texture.copies, texture.wrap);

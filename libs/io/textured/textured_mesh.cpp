@@ -40,27 +40,27 @@ const FormatNames& format_names(TexturedFormat format) {
 void check(const TexturedMesh& mesh, const std::string& file) {
   const std::size_t faces = mesh.mesh.faces.size();
   if (mesh.uv.size() != faces || mesh.texture_of.size() != faces)
-    fail("{}: the mesh has {} faces, {} texture coordinates and {} texture numbers", file, faces,
-         mesh.uv.size(), mesh.texture_of.size());
+    fail_in(file, "the mesh has {} faces, {} texture coordinates and {} texture numbers", faces,
+            mesh.uv.size(), mesh.texture_of.size());
   for (std::size_t f = 0; f < faces; ++f) {
     if (mesh.texture_of[f] >= mesh.textures.size())
-      fail("{}: face {} has texture {}, but there are {}", file, f, mesh.texture_of[f],
-           mesh.textures.size());
+      fail_in(file, "face {} has texture {}, but there are {}", f, mesh.texture_of[f],
+              mesh.textures.size());
     for (std::size_t k = 0; k < 3; ++k) {
       if (mesh.mesh.faces[f][k] >= mesh.mesh.vertices.size())
-        fail("{}: face {} refers to vertex {}, but there are {}", file, f, mesh.mesh.faces[f][k],
-             mesh.mesh.vertices.size());
+        fail_in(file, "face {} refers to vertex {}, but there are {}", f, mesh.mesh.faces[f][k],
+                mesh.mesh.vertices.size());
       if (!mesh.uv[f][k].allFinite())
-        fail("{}: face {} has a texture coordinate that is not finite", file, f);
+        fail_in(file, "face {} has a texture coordinate that is not finite", f);
     }
   }
   for (std::size_t v = 0; v < mesh.mesh.vertices.size(); ++v)
-    if (!mesh.mesh.vertices[v].allFinite()) fail("{}: vertex {} is not finite", file, v);
+    if (!mesh.mesh.vertices[v].allFinite()) fail_in(file, "vertex {} is not finite", v);
 }
 
 Bytes png_bytes(const cv::Mat3b& image, const std::string& file) {
   Bytes bytes;
-  if (!cv::imencode(".png", image, bytes)) fail("{}: a texture cannot be encoded", file);
+  if (!cv::imencode(".png", image, bytes)) fail_in(file, "a texture cannot be encoded");
   return bytes;
 }
 
@@ -68,7 +68,7 @@ void write_file(const fs::path& path, const std::function<void(std::ostream&)>& 
   std::ofstream stream(path, std::ios::binary);
   write(stream);
   stream.close();
-  if (!stream) fail("{}: cannot be written", path.string());
+  if (!stream) fail_in(path, "cannot be written");
 }
 
 template <class Container>

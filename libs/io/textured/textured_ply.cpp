@@ -101,8 +101,8 @@ class TexturedPlyReader {
     else
       use_vertices(bytes);
     if (result_.uv.size() != result_.mesh.faces.size())
-      fail("{}: has {} triangles, but texture coordinates of {}", file_, result_.mesh.faces.size(),
-           result_.uv.size());
+      fail_in(file_, "has {} triangles, but texture coordinates of {}", result_.mesh.faces.size(),
+              result_.uv.size());
     textures_.finish(result_);
     return std::move(result_);
   }
@@ -113,10 +113,10 @@ class TexturedPlyReader {
            std::uint64_t f) {
     const auto textures = header_.texture_files.size();
     if (!(texture >= 0 && texture < static_cast<double>(textures)))
-      fail("{}: {} {} has texnumber {}, but there are {} textures", file_, kind, f, texture,
-           textures);
+      fail_in(file_, "{} {} has texnumber {}, but there are {} textures", kind, f, texture,
+              textures);
     for (const Eigen::Vector2d& corner : uv)
-      if (!corner.allFinite()) fail("{}: {} {} has a texcoord that is not finite", file_, kind, f);
+      if (!corner.allFinite()) fail_in(file_, "{} {} has a texcoord that is not finite", kind, f);
     textures_.add_face(result_, static_cast<std::uint32_t>(texture), uv,
                        [&] { return fmt::format("{}: {} {}", file_, kind, f); });
   }
@@ -125,8 +125,8 @@ class TexturedPlyReader {
   void add_face(const FaceRow& row, std::uint64_t f) {
     const std::size_t corners = row.corners.size();
     if (row.uv.size() != 2 * corners)
-      fail("{}: face {} has {} numbers in texcoord, expected {}", file_, f, row.uv.size(),
-           2 * corners);
+      fail_in(file_, "face {} has {} numbers in texcoord, expected {}", f, row.uv.size(),
+              2 * corners);
     const auto at = [&](std::size_t k) {
       return Eigen::Vector2d(row.uv[2 * k], row.uv[2 * k + 1]);
     };
@@ -204,7 +204,7 @@ TexturedMesh read_textured_ply(const fs::path& path, const std::optional<LocalFr
   Mesh mesh = frame ? read_mesh_ply(path, *frame) : read_mesh_ply(path);
   const std::string bytes = read_file(path);
   const PlyHeader header = parse_ply_header(bytes, file);
-  if (header.texture_files.empty()) fail("{}: has no comment TextureFile", file);
+  if (header.texture_files.empty()) fail_in(file, "has no comment TextureFile");
   return TexturedPlyReader(path, header).read(bytes, std::move(mesh));
 }
 

@@ -13,7 +13,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -24,25 +26,40 @@
 
 namespace axial {
 
+// A setting in the text of an error or of a line: `name` between two marks. `name` is the name of a
+// field or of a parameter ("max_memory"), or this name with a value ("make_maps false"). A library
+// does not know the options of programs. Its messages mark the settings, and in_words() puts other
+// names in their place.
+std::string setting(std::string_view name);
+
+// The words by which messages call settings, such as the options of a program: from names of
+// setting() to words.
+using SettingNames = std::map<std::string, std::string, std::less<>>;
+
+// Returns `text` without marks: each setting has the name in `names`, or its own name if `names`
+// lacks the setting.
+std::string in_words(std::string_view text, const SettingNames& names = {});
+
 // An error that a user can cause. The message names, in this order and as far as they apply, the
 // file, the field and the value: "scene.mvs: images[3].poseID is 17, but the platform has 4 poses".
+// what() is one line of at most 500 bytes, in which settings have their own names.
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  // `text`: the message, which may contain setting(). `file`: the result of file().
+  explicit Error(const std::string& text, const std::filesystem::path& file = {});
+
+  // The message with its marks, for in_words() and for the text of another Error.
+  const std::string& text() const;
+  // The file, or the place in a file ("a.txt: line 3"), with which the message begins. Empty: the
+  // message begins otherwise.
+  const std::filesystem::path& file() const;
+  // The name of the setting with which the message begins ("max_memory"). Empty: there is none.
+  std::string setting() const;
+
+ private:
+  struct Parts;
+  std::shared_ptr<const Parts> parts_;
 };
-
-// The names of settings in messages. A library does not know the options of programs. Messages of a
-// library call a setting as its headers do, for example "max_memory", unless the caller supplies
-// other names.
-//
-// A function that returns the words by which a message calls `setting`. `setting` is the name of a
-// field or of a parameter ("max_memory"), or this name with a value ("make_maps false").
-using SettingNames = std::function<std::string(std::string_view setting)>;
-
-// Returns `setting` itself.
-inline std::string own_name(std::string_view setting) {
-  return std::string(setting);
-}
 
 // The levels of lines, in ascending order.
 enum class LogLevel { trace, debug, info, warning };
@@ -57,10 +74,11 @@ struct Event {
   Kind kind = Kind::line;
   LogLevel level = LogLevel::info;  // of a line
   // The line, or the title of the stage. A warning is one line of at most 500 bytes
-  // (base/message.h).
+  // (base/message.h). Settings have their own names.
   std::string text;
   // The number of items done and of all items of the stage. Both are 0 when the stage begins.
   std::size_t done = 0, total = 0;
+  std::string marked{};  // of a line: the text with its marks, for in_words(), of any length
 };
 
 using EventSink = std::function<void(const Event&)>;
@@ -103,14 +121,14 @@ class MemoryBudget {
   // The budget of a whole program: `megabytes` megabytes, or, for 0, 70 % of the memory that is now
   // available or used by this process. What the process uses at the time of a call is in use, at
   // least `program_bytes`, so that a program that has just begun decides like one that has loaded
-  // all of its code. `setting`: the name of `megabytes` in messages. Throws an Error that names the
-  // setting for 0 megabytes if the system does not report how much memory is available.
-  static MemoryBudget of_program(std::uint64_t megabytes, std::string setting = "max_memory",
+  // all of its code. Messages call `megabytes` the setting "max_memory". Throws an Error that names
+  // the setting for 0 megabytes if the system does not report how much memory is available.
+  static MemoryBudget of_program(std::uint64_t megabytes,
                                  std::uint64_t program_bytes = kProgramBytes);
 
   // A budget of `bytes` bytes. Only reservations are in use, so that decisions do not depend on
   // what the process uses.
-  static MemoryBudget of_bytes(std::uint64_t bytes, std::string setting = "max_memory");
+  static MemoryBudget of_bytes(std::uint64_t bytes);
 
   // The budget of a stage that counts its own memory: of_bytes(left()) for the budget of a program;
   // another budget itself.
@@ -121,8 +139,7 @@ class MemoryBudget {
 
   bool is_limited() const { return state_ != nullptr; }
 
-  // The next four are for a budget that has a limit.
-  const std::string& setting() const;
+  // The next three are for a budget that has a limit.
   std::uint64_t megabytes() const;      // of_program(): as given, also 0
   std::uint64_t program_bytes() const;  // of_bytes(): 0
   std::uint64_t limit() const;          // [bytes]

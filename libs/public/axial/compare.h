@@ -160,7 +160,6 @@ struct CompareOptions {
   bool allow_other_place = false;
   // For the fields `pixel`, "ground_sample_distance", `photos.least`, "min_views", and
   // `allow_other_place`.
-  SettingNames name_of = own_name;
   // The names of the surveys in errors.
   std::filesystem::path name_before = "the earlier survey", name_after = "the later survey";
 };

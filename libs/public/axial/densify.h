@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -129,16 +128,13 @@ using Job = std::variant<WholeRun, StageJob, TileJob, PlanJob, NeighbourListsJob
 // The options of a run. Paths are absolute.
 struct Options {
   // The scene, its photographs and masks. The scene and the working folder, which also gets the
-  // depth maps, are required. All calibrated images are used. Errors and warnings name the options
-  // by survey.files.name_of.
+  // depth maps, are required. All calibrated images are used.
   survey::Options survey;
   ViewOptions views;
   MatchOptions matching;
   FusionOptions fusion;
   OutputOptions output;
   Job job = WholeRun();
-
-  std::string name_of(std::string_view option) const { return survey.files.name_of(option); }
 
   // The job if it is of this kind, otherwise null.
   template <class Kind>

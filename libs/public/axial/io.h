@@ -21,14 +21,12 @@ enum class PortChoice {
 
 // The files of a scene. The paths are absolute. Messages name four settings: "allow_missing",
 // "housing", "refractive" (PortChoice::required) and "camera is flat_port" (PortChoice::flat).
-// `name_of` translates these names to the names that the user knows.
 struct SceneFiles {
   std::filesystem::path scene;           // the .mvs file
   std::filesystem::path working_folder;  // relative image paths in the scene start here
   std::filesystem::path housing;         // empty: the housing file beside the scene, if any
   PortChoice ports = PortChoice::automatic;
   bool allow_missing = false;  // true: warn if `housing` gives no image a port, instead of an Error
-  SettingNames name_of = own_name;
 };
 
 // A decoded photograph.

@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -76,12 +75,12 @@ struct MapGrid {
 // `pixel` is above 0.
 inline constexpr double kMostPixels = 1'000'000;
 MapGrid grid_around(const Mesh& mesh, const MapFrame& frame, double pixel,
-                    SettingNames name_of = own_name, double most = kMostPixels);
+                    double most = kMostPixels);
 
-// The coordinate reference system of an EPSG code, as WKT. Error that calls `code` by
-// name_of("epsg") if PROJ does not know the code, and if the system is not a projected one with
+// The coordinate reference system of an EPSG code, as WKT. Error that calls `code` the setting
+// "epsg" if PROJ does not know the code, and if the system is not a projected one with
 // metres as unit.
-std::string crs_of_epsg(int code, SettingNames name_of = own_name);
+std::string crs_of_epsg(int code);
 
 inline constexpr float kNoHeight = -9999;  // of a pixel without surface
 
@@ -117,8 +116,6 @@ struct WriteOptions {
   int samples = 0;                // along each side of a pixel, odd; 0: samples_per_pixel()
   double contour_interval = 0;    // height between contour lines [m]
   int longest_side = 2048;        // of the picture, without its strip [px]
-  // Errors name the field contour_interval by name_of("contour_interval").
-  SettingNames name_of = own_name;
 };
 
 struct MapReport {

@@ -85,9 +85,6 @@ struct ReconstructOptions {
   CleanOptions clean;
   bool only_region = false;    // use only points in Scene::region, if there is one
   bool crop_to_region = true;  // remove faces with a corner outside of Scene::region, if any
-  // Errors name merge.min_distance by name_of("merge.min_distance"), and the number of tiles by
-  // name_of("tiles").
-  SettingNames name_of = own_name;
 };
 
 // Reconstructs the surface that the images of `scene` see in `cloud`. The views of the cloud are

@@ -36,8 +36,8 @@ struct MemorySurvey {
 // - a sparse point that is not finite or that an image sees that does not exist.
 void check(const MemorySurvey& survey);
 
-// Messages name the settings by files.name_of: the settings of io::SceneFiles, and "bit_depth",
-// "ignore_mask_label" and "mask_folder".
+// Messages name the settings of io::SceneFiles, and "bit_depth", "ignore_mask_label" and
+// "mask_folder".
 struct Options {
   io::SceneFiles files;
   std::shared_ptr<const MemorySurvey> memory_survey;  // not null: instead of files.scene

@@ -127,8 +127,6 @@ struct Options {
   // The memory [bytes] that the caller needs afterwards to write the result, besides the result. An
   // empty function: none.
   std::function<std::uint64_t(const ResultSize&)> bytes_to_write;
-  // Errors name the field `tiles` by name_of("tiles").
-  SettingNames name_of = own_name;
 };
 
 // The numbers that texturing reports.

@@ -34,8 +34,8 @@ class ByteReader {
   // Reads and returns the next `size` bytes.
   std::string_view take(std::size_t size, std::string_view field) {
     if (size > left())
-      fail("{}: truncated: {} needs {} bytes at byte {}, but {} are left", file_, field, size,
-           position_, left());
+      fail_in(file_, "truncated: {} needs {} bytes at byte {}, but {} are left", field, size,
+              position_, left());
     const std::string_view taken = bytes_.substr(position_, size);
     position_ += size;
     return taken;
@@ -66,8 +66,9 @@ class ByteReader {
 
   void require_room(std::uint64_t number, std::uint64_t min_bytes, std::string_view field) const {
     if (number > left() / min_bytes)
-      fail("{}: {} should have {} elements, but only {} bytes are left (truncated or malformed)",
-           file_, field, number, left());
+      fail_in(file_,
+              "{} should have {} elements, but only {} bytes are left (truncated or malformed)",
+              field, number, left());
   }
 
   // Reads a 64-bit length, then that many bytes.
@@ -80,7 +81,7 @@ class ByteReader {
   std::string c_string(std::string_view field) {
     const std::size_t end = bytes_.find('\0', position_);
     if (end == std::string_view::npos)
-      fail("{}: truncated: {} at byte {} has no end", file_, field, position_);
+      fail_in(file_, "truncated: {} at byte {} has no end", field, position_);
     std::string text(bytes_.substr(position_, end - position_));
     position_ = end + 1;
     return text;
@@ -88,7 +89,7 @@ class ByteReader {
 
   // Error unless all bytes have been read.
   void require_end() const {
-    if (left() > 0) fail("{}: malformed: {} bytes follow the end of the data", file_, left());
+    if (left() > 0) fail_in(file_, "malformed: {} bytes follow the end of the data", left());
   }
 
  private:

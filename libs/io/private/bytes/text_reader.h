@@ -39,7 +39,7 @@ class TextLine {
 
   std::string_view word(std::string_view field) {
     const std::string_view token = take_token(text_);
-    if (token.empty()) fail("{}: {} is missing", where(), field);
+    if (token.empty()) fail_in(where(), "{} is missing", field);
     return token;
   }
 
@@ -47,7 +47,7 @@ class TextLine {
   T number(std::string_view field) {
     const std::string_view token = word(field);
     const std::optional<T> value = parse_finite<T>(token);
-    if (!value) fail("{}: {} is '{}', which is not a valid number", where(), field, token);
+    if (!value) fail_in(where(), "{} is '{}', which is not a valid number", field, token);
     return *value;
   }
 
@@ -64,7 +64,7 @@ class TextLine {
   // The same as the name of a file. Error for a NUL byte, at which the system would end the name.
   std::string_view file_name() const {
     if (text_.find('\0') != std::string_view::npos)
-      fail("{}: the name of a file contains a NUL byte", where());
+      fail_in(where(), "the name of a file contains a NUL byte");
     return rest();
   }
 
@@ -91,7 +91,7 @@ class TextReader {
     ++number_;
     const std::size_t end = text_.find('\n');
     if (end == std::string_view::npos)
-      fail("{}: line {} has no end: the file is truncated", file_, number_);
+      fail_in(file_, "line {} has no end: the file is truncated", number_);
     const TextLine next(text_.substr(0, end), file_, number_);
     text_.remove_prefix(end + 1);
     return next;

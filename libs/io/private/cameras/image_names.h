@@ -61,7 +61,7 @@ template <class Defined>
 ByImage names_by_image(const JsonPlace& place, const Defined& defined, const char* what) {
   ByImage images;
   for (const std::string& key : place.keys()) {
-    if (key.empty()) fail("{}: an image name is empty", place.where);
+    if (key.empty()) fail_in(place.where, "an image name is empty");
     images[key] = defined_name(place, key, defined, what);
   }
   return images;
