@@ -21,17 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 using Between = pose::KnownDistance::Between;
 
-void append(control::Control more, control::Control& all) {
-  const auto move_to_end = [](auto& from, auto& to) {
-    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
-  };
-  move_to_end(more.images, all.images);
-  move_to_end(more.points, all.points);
-  move_to_end(more.bars, all.bars);
-  move_to_end(more.notes, all.notes);
-  if (all.crs.empty()) all.crs = more.crs;
-}
-
 // The photographs by the names that files give them.
 class Photographs {
  public:
@@ -192,7 +181,7 @@ control::Control read_control(const ControlOptions& options) {
     control::ControlReading reading;
     reading.role = role;
     reading.epsg = options.epsg;
-    append(control::read_control(file, reading), all);
+    control::append(all, control::read_control(file, reading));
   };
   add(options.targets, control::Role::images);
   // The file of targets may contain bars and control points, too.

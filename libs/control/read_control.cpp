@@ -66,6 +66,10 @@ const std::string& name_of(const ControlPoint& point) {
   return point.label;
 }
 
+bool has_plane(const ControlPoint& point) {
+  return point.knows(0) && point.knows(1);
+}
+
 template <class Item>
 void append_new(std::vector<Item>& items, const std::vector<Item>& more) {
   for (const Item& item : more) {
@@ -81,11 +85,12 @@ void append_new(std::vector<Item>& items, const std::vector<Item>& more) {
 }  // namespace
 
 void append(Control& control, Control more) {
-  if (!control.points.empty() && !more.points.empty() && control.crs != more.crs)
-    fail_in(more.points.front().where,
-            "the points are in the system '{}', but those of {} are in '{}'", more.crs,
-            control.points.front().where, control.crs);
-  if (!more.points.empty()) control.crs = more.crs;
+  const auto known = std::ranges::find_if(control.points, has_plane);
+  const auto other = std::ranges::find_if(more.points, has_plane);
+  if (known != control.points.end() && other != more.points.end() && control.crs != more.crs)
+    fail_in(other->where, "the points are in the system '{}', but those of {} are in '{}'",
+            more.crs, known->where, control.crs);
+  if (other != more.points.end()) control.crs = more.crs;
   append_new(control.points, more.points);
   append_new(control.bars, more.bars);
   std::ranges::move(more.images, std::back_inserter(control.images));

@@ -46,8 +46,8 @@ struct ControlReading {
 Control read_control(const std::filesystem::path& file, const ControlReading& options);
 
 // Appends the contents of a file to those of others. Error that names both places for a point or a
-// bar that both have with other numbers, and the file of `more` for points in another system.
-// Points and bars that both have are kept once.
+// bar that both have with other numbers, and the place of a point of `more` whose x and y are in
+// another system. Points and bars that both have are kept once.
 void append(Control& control, Control more);
 
 }  // namespace axial::control

@@ -93,8 +93,9 @@ PROGRAMS = {program.name: program for program in (
             (*BOARDS[:2], "board/lens.txt", "board/start.json"), BOARDS,
             may_name=("board",)),
     Program("ExtractFrames", ("-i", "clip.avi", "-o", "out", "--json", "out.json"), ("clip.avi",)),
-    Program("FindTargets", ("-i", "board/photos", "-o", "out.json", "--families", "circular12,4X4_50"), BOARDS[:1],
-            may_name=("board",)),
+    Program("FindTargets", ("-i", "board/photos", "-o", "out.xml", "--families", "circular12,4X4_50", "--control",
+                            "control.json", "--control", "plates.csv", "--control", "bars.txt"),
+            (*BOARDS[:1], "control.json", "plates.csv", "bars.txt"), may_name=("board",)),
     Program("ReproducePaper", ("figure3", "--quick", "-o", "paper"),
             ("paper/quick/figure3.json", "ReproducePaper.cfg"), kept_on_error=r"paper/.*",
             may_name=("figure3",)),
@@ -139,6 +140,10 @@ def make_all(binaries, folder):
     write_few(folder)
     write_other(folder)
     (folder / "SimulateUnderwater.cfg").write_text("# A comment\nseed = 2\nrelief = 1.5\n")
+    (folder / "control.json").write_text(
+        '{"crs": "EPSG:32617", "points": [{"label": "target 1", "x": 500000, "y": 2500000, "z": -3, "sigma": 0.01}]}')
+    (folder / "plates.csv").write_text("label,lat,lon,depth,xyAcc,zAcc\n2,22.6,-81.0,-3.5,0.02,0.03\n")
+    (folder / "bars.txt").write_text("target 1,target 2,0.5,0.001\n")
     (folder / "ReproducePaper.cfg").write_text("# A comment\nquick = 1\n")
     (folder / "paper").mkdir()
     run("ReproducePaper", *PROGRAMS["ReproducePaper"].options)

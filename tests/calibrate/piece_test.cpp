@@ -10,6 +10,7 @@
 
 #include "calibrate/board_survey.h"
 #include "calibrate/photographs.h"
+#include "calibrate/see_board.h"
 #include "support/photograph.h"
 
 namespace axial::calibrate {

@@ -267,6 +267,8 @@ TEST_F(ReadControl, SeveralFilesAreOneControl) {
   EXPECT_EQ(control.crs, "EPSG:32617");
   EXPECT_EQ(control.points.size(), 2u);
   EXPECT_EQ(control.bars.size(), 1u);
+  append(control, read("depths.json", R"({"points": [{"label": "9", "depth": 4}]})"));
+  EXPECT_EQ(control.crs, "EPSG:32617");
   EXPECT_THAT(test::error_of([&] { append(control, read("c.csv", "label,x,y,z\n3,1,2,3\n")); }),
               HasSubstr("c.csv:2: the points are in the system ''"));
   EXPECT_THAT(test::error_of([&] { append(control, read("c.txt", "1,2,0.6\n")); }),
