@@ -41,6 +41,7 @@ std::vector<fs::path> inputs_of(const Options& options, const fs::path& model) {
   if (options.scale_from.starts_with(kPositions))
     inputs.push_back(options.parsed.common.working_folder /
                      options.scale_from.substr(kPositions.size()));
+  for (fs::path& file : files_of(options.rigs)) inputs.push_back(std::move(file));
   for (const fs::path& folder : {model, options.lens})
     for (const fs::path& file : files_in(folder)) inputs.push_back(file);
   return inputs;

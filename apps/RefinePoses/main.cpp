@@ -28,6 +28,7 @@ void finish(const Options& options, const Input& input, const Refined& refined,
   judge(options, refined, results);
   const pose::Uncertainty known = write(options, input, refined, results, context);
   for (const std::string& line : uncertainty_lines(results, known)) log_info("{}", line);
+  for (const std::string& line : rig_lines(refined.after.bundle, known)) log_info("{}", line);
   if (!results.options.poses_known) {
     log_info("{}", shape_line(known));
     log_info("{}", depth_line(known));
@@ -36,6 +37,7 @@ void finish(const Options& options, const Input& input, const Refined& refined,
     for (const std::string& line : control_lines(*results.control)) log_info("{}", line);
     for (const std::string& line : control_warnings(*results.control)) log_warning("{}", line);
   }
+  for (const std::string& line : rig_warnings(refined.after.bundle, known)) log_warning("{}", line);
   judge_numbers(options, known, results);
 }
 

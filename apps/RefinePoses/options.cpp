@@ -30,6 +30,7 @@ void check(const Options& options) {
     fail("--scale-sigma {}: is the standard deviation of --scale-from, which is missing",
          options.scale_sigma.metres);
   check(options.control);
+  check_rigs(options.rigs);
   if (options.output.empty()) fail("--output-folder is missing");
 }
 
@@ -141,6 +142,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   // In the order of --help.
   declare_files(program.visible, options, housing);
   declare_estimate(program.visible, options);
+  declare_rigs(program.visible, options.rigs);
   UnusedInput::declare(program.visible, options.allow_missing);
   options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;

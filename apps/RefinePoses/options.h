@@ -9,6 +9,7 @@
 #include "control.h"
 #include "pose/free_numbers.h"
 #include "pose/refine.h"
+#include "rigs.h"
 #include "scale_from.h"
 
 namespace axial::apps {
@@ -32,6 +33,7 @@ struct Options {
   std::vector<std::string> dropped_positions;  // lines of add_known() (scale_from.h)
   std::string refine_list = "auto";            // `refine` of pose::set_estimated_numbers()
   pose::Sigmas sigmas;
+  RigInput rigs;
   pose::RefineOptions refine;
 };
 

@@ -100,6 +100,7 @@ void Refining::set_known() {
   if (options_.control.any())
     refined_.control = add_control(input_.control, refined_.after.bundle, options_.refine);
   adjust.poses_known = options_.poses == "known";
+  refined_.after.bundle.rigs = read_rigs(options_.rigs, input_.model);
   pose::set_estimated_numbers(options_.refine_list, options_.sigmas, bundle(), adjust,
                               options_.parsed.option_of);
   options_.refine.keep_stated = options_.refine_list == "auto";
@@ -117,6 +118,7 @@ void Refining::find_unknown_kind() {
 void Refining::tell_input() const {
   log_info("{}: {} images, {} points, {} observations", input_.folder.string(),
            input_.model.images.size(), input_.model.points.size(), bundle().observations.size());
+  for (const std::string& line : input_lines(bundle().rigs)) log_info("{}", line);
   if (refined_.after.unseen > 0)
     log_warning("{} observations lie at pixels for which the lens in air has no ray",
                 refined_.after.unseen);

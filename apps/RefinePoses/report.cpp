@@ -10,6 +10,7 @@
 
 #include "io/bytes/json.h"
 #include "pose/free_numbers.h"
+#include "rigs.h"
 
 namespace axial::apps {
 namespace {
@@ -257,6 +258,8 @@ std::string report_json(const Results& results, const pose::Uncertainty* known) 
   if (!known) json["standard_deviations"] = "missing";
   if (Json positions = positions_json(report); !positions.is_null())
     json["positions"] = std::move(positions);
+  if (Json rigs = rigs_json(results.bundle, uncertainty); !rigs.is_null())
+    json["rigs"] = std::move(rigs);
   if (!results.unused.empty()) json["unused"] = results.unused;
   if (results.control) json["control"] = control_json(*results.control);
   if (results.registered) json["registered"] = json_of(*results.registered);

@@ -137,8 +137,10 @@ struct AdjustReport {
 // (BundleCamera::change) to minimize the cost, from their present values. The cost is the sum of
 // the squared reprojection errors of the exact projection (with Huber loss, in units of
 // `pixel_sigma` times Observation::sigma) and of the squared deviations from known distances,
-// positions, places and measured numbers (in their standard deviations). Positions and places have
-// a Huber loss, too: deviations of more than three standard deviations count linearly.
+// positions, places, measured numbers and stated poses in rigs (in their standard deviations).
+// Positions and places have a Huber loss, too: deviations of more than three standard deviations
+// count linearly. The deviation of the photographs of a frame from their rig (rig.h) has a Huber
+// loss above 4.1.
 //
 // Without knowledge of positions, places, points or poses, the cost does not depend on where the
 // model is in the world. The pose of one image therefore stays constant: of the first image with an
@@ -192,6 +194,9 @@ struct Uncertainty {
   // Infinite if nothing determines it. 0 if poses are known, or with fewer than three images.
   double shape_sigma = 0;
   std::size_t least_linked = 0;  // the image with the largest part in `shape_sigma`
+  // Of the poses of the cameras in their rigs, in the order of Bundle::rigs and Rig::cameras. 0:
+  // fixed. Infinite: nothing determines it.
+  std::vector<std::vector<RigSigma>> rig_sigmas;
   // depth_sigma() (depth_sigma.h); 0 if poses are known. uncertainty() does not compute it.
   double depth_sigma = 0;
 };

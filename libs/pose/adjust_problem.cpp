@@ -136,12 +136,14 @@ AdjustProblem::AdjustProblem(const Bundle& bundle, const AdjustOptions& options)
   problem_ = std::make_unique<ceres::Problem>(problem_options(cameras_.get()));
   add_observations();
   add_known();
+  add_rigs();
   fix_what_stays();
 }
 
 void AdjustProblem::fill_numbers() {
   numbers_.resize(kPoseNumbers * bundle_.images.size() + kHousingNumbers * bundle_.cameras.size() +
-                  3 * bundle_.points.size());
+                  3 * bundle_.points.size() + kPoseNumbers * rig_camera_count());
+  fill_rigs();
   for (std::size_t i = 0; i < bundle_.images.size(); ++i)
     std::ranges::copy(numbers_of(bundle_.images[i].pose), image_block(i));
   for (std::size_t i = 0; i < bundle_.cameras.size(); ++i)
@@ -300,6 +302,8 @@ std::vector<double*> AdjustProblem::camera_blocks() {
   for (std::size_t i = 0; i < bundle_.images.size(); ++i) add(image_block(i));
   for (std::size_t i = 0; i < bundle_.cameras.size(); ++i)
     if (owns_change(i)) add(change_block(i));
+  for (std::size_t i = 0; i < bundle_.rigs.size(); ++i)
+    for (std::size_t k = 0; k < bundle_.rigs[i].cameras.size(); ++k) add(rig_block(i, k));
   for (std::size_t i = 0; i < bundle_.points.size(); ++i)
     if (tied_[i]) add(point_block(i));
   return blocks;
@@ -330,6 +334,7 @@ void AdjustProblem::write_back(Bundle& bundle) {
     std::copy_n(point_block(i), 3, bundle.points[i].position.begin());
   for (std::size_t i = 0; i < bundle.cameras.size(); ++i)
     std::copy_n(change_block(i), kHousingNumbers, bundle.cameras[i].change.begin());
+  write_rigs(bundle);
 }
 
 }  // namespace axial::pose

@@ -14,7 +14,7 @@ namespace axial::pose {
 
 // The Ceres problem of a bundle. Its first residual blocks belong to the observations, in the order
 // of the bundle. The blocks of the known distances, positions and places, of the measured numbers
-// of cameras and of the excluded motions follow, in this order.
+// of cameras, of the excluded motions and of the rigs follow, in this order.
 class AdjustProblem {
  public:
   // Both arguments must outlive this object. The constructor does not change the bundle. Throws
@@ -29,7 +29,8 @@ class AdjustProblem {
   // and a block of a point the 3 coordinates of its position. The solver eliminates the blocks of
   // point_blocks(), so no residual may depend on two blocks of point_blocks(). Points with a known
   // distance to another point are therefore among camera_blocks(), and so are targets.
-  std::vector<double*> camera_blocks();  // poses, changes of cameras, these points
+  std::vector<double*> camera_blocks();  // poses, also of cameras in rigs, changes of cameras,
+                                         // these points
   std::vector<double*> point_blocks();   // all other points
 
   // The number of poses that the solver changes.
@@ -52,6 +53,10 @@ class AdjustProblem {
     return image_block(bundle_.images.size()) + kHousingNumbers * owner;
   }
 
+  // The parameter block of the pose of a camera in its rig. It exists in the problem only if a
+  // frame has a photograph of the camera and of another one.
+  double* rig_block(std::size_t rig, std::size_t camera);
+
   // Writes the present values of the parameter blocks, as poses, points and changes, to `bundle`,
   // which is the bundle of the constructor or a copy of it.
   void write_back(Bundle& bundle);
@@ -73,14 +78,20 @@ class AdjustProblem {
   void exclude_free_motions();
   void add_known_distance(const KnownDistance& known);
   void add_measured(std::size_t camera, int number);
+  std::size_t rig_camera_count() const;
+  void fill_rigs();
+  void add_rigs();
+  void add_frames(std::size_t rig);
+  void add_stated_poses(std::size_t rig);
+  void write_rigs(Bundle& bundle);
   void fix_points();
   void fix_poses();
   void fix_what_stays();
 
   const Bundle& bundle_;
   const AdjustOptions& options_;
-  // All parameter blocks: of the poses, of the changes and of the points. The solver orders blocks
-  // by their addresses: in one array, the order is the same in every run.
+  // All parameter blocks: of the poses, of the changes, of the points and of the rigs. The solver
+  // orders blocks by their addresses: in one array, the order is the same in every run.
   std::vector<double> numbers_;
   std::vector<bool> tied_;  // points with a known distance to another point, and targets
   std::unique_ptr<CurrentCameras> cameras_;

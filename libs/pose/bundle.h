@@ -14,6 +14,7 @@
 
 #include "axial/scene.h"
 #include "pose/housing_change.h"
+#include "pose/rig.h"
 
 namespace axial::pose {
 
@@ -69,6 +70,7 @@ struct Bundle {
   std::vector<BundleImage> images;
   std::vector<BundlePoint> points;
   std::vector<Observation> observations;
+  std::vector<Rig> rigs = {};  // cameras that are mounted together
 };
 
 // The cameras of the bundle with their changes applied, in the order of Bundle::cameras.

@@ -183,18 +183,23 @@ void scale_by_targets(Bundle& bundle, const AdjustOptions& options) {
 }
 
 void bring_to_metres(Bundle& bundle, const AdjustOptions& options) {
+  leave_out_unobserved(bundle);
   if (!options.poses_known && !place_by_positions(bundle, options.positions)) {
     if (has_targets(bundle)) {
       scale_places(bundle, kUsualDistance / median_distance(bundle));
       triangulate(bundle);
     }
-    if (!determine_scale(options)) scale_places(bundle, best_scale(bundle));
+    if (!determine_scale(options)) {
+      const double by_rigs = scale_by_rigs(bundle);
+      scale_places(bundle, by_rigs > 0 ? by_rigs : best_scale(bundle));
+    }
     if (has_targets(bundle))
       scale_by_targets(bundle, options);
     else if (const double known = known_scale(bundle, options); known > 0)
       scale_places(bundle, known);
   }
   triangulate(bundle);
+  start_rigs(bundle);
 }
 
 RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context& context) {
@@ -221,6 +226,8 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context&
     if (round == 0) report.repeated = drop_repeated(bundle);
     const std::size_t dropped = filter(bundle, limits, &report.dropped);
     if (bundle.observations.empty()) fail("no observation fits refractive cameras");
+    leave_out_unobserved(bundle);
+    if (round > 0) set_delays(bundle);
     report.lost = lost_knowledge(bundle, adjusting);
     if (!report.lost.empty()) return report;
     adjuster.say(fmt::format("round {}: {} iterations, RMS {:.3f} px, {} observations dropped",
@@ -242,6 +249,7 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context&
   while (leave_out_worst(bundle, adjusting, report.wrong_control))
     report.last = adjuster.adjust(bundle, adjusting, "adjustment without a wrong bar or place");
   filter(bundle, limits, &report.dropped);
+  leave_out_unobserved(bundle);
   if (bundle.observations.empty()) fail("no observation fits refractive cameras");
   report.lost = lost_knowledge(bundle, adjusting);
   judge_control(bundle, adjusting, report);

@@ -66,9 +66,12 @@ struct RefineReport {
 // - `options.places` place the bundle (place_by_control() in control_start.h), and, if they do not
 //   determine it, leave the scale to the next rules.
 // - `options.distances` scale the bundle, by the median of their scales.
+// - Stated poses of cameras in rigs scale the bundle (scale_by_rigs() in rig.h).
 // - Otherwise a short adjustment is tried for a series of median scene distances from 0.25 to 16
 //   m, and the scale with the smallest error is taken. The errors differ because refraction depends
 //   on the distance in metres.
+//
+// The rigs of the bundle get their start (start_rigs()).
 //
 // Throws an Error if the rule of distances applies and a known distance is zero in the
 // model or names a point that the bundle does not have. Throws an Error if the last rule applies
@@ -92,6 +95,10 @@ void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 // `sigma_is_guess` is estimated. In the rounds, these positions have three times the estimate, so
 // that the poses follow the observations and the estimate shows the accuracy of the positions. In
 // the last adjustment they have the estimate itself.
+//
+// Photographs without observations leave the frames of rigs. Before the last round and the last
+// adjustment, delays of cameras in rigs are found (set_delays() in rig.h), so that cameras that are
+// not synchronised do not bend the model.
 //
 // For the standard deviations of the result, call uncertainty() with the refined bundle and
 // `options.adjust`, but with the positions of the report. Throws an Error if no observation is

@@ -194,6 +194,21 @@ class Normal {
     return sigmas;
   }
 
+  RigSigma sigmas_in_rig(std::size_t rig, std::size_t camera) {
+    RigSigma sigmas;
+    double* const block = problem_.rig_block(rig, camera);
+    if (bundle_.rigs[rig].cameras[camera].known == RigCamera::Known::fixed) return sigmas;
+    const auto found = columns_.find(block);
+    for (int k = 0; k < kPoseNumbers; ++k) {
+      double& sigma = k < 3 ? sigmas.rotation(k) : sigmas.translation(k - 3);
+      sigma = kInfinite;
+      if (found == columns_.end()) continue;
+      const Eigen::Index unknown = unknown_of_column_[static_cast<std::size_t>(found->second + k)];
+      sigma = std::sqrt(covariance_->variance(Eigen::VectorXd::Unit(unknowns_, unknown)));
+    }
+    return sigmas;
+  }
+
   NumbersCovariance covariance_of_numbers() {
     NumbersCovariance result;
     std::vector<Eigen::VectorXd> rows;
@@ -423,6 +438,11 @@ Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options,
   Normal normal(bundle, weighed, context);
   for (std::size_t camera = 0; camera < bundle.cameras.size(); ++camera)
     result.camera_sigmas.push_back(normal.sigmas_of_camera(camera));
+  for (std::size_t rig = 0; rig < bundle.rigs.size(); ++rig) {
+    result.rig_sigmas.emplace_back();
+    for (std::size_t camera = 0; camera < bundle.rigs[rig].cameras.size(); ++camera)
+      result.rig_sigmas.back().push_back(normal.sigmas_in_rig(rig, camera));
+  }
   if (options.poses_known) return result;
   result.scale_sigma = normal.sigma_of_scale();
   normal.find_shape(result);

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "private/colmap/colmap_parts.h"
+#include "private/colmap/rig_parts.h"
 #include "reader.h"
 
 namespace axial::fuzz {
@@ -111,6 +112,57 @@ bool write_model_seed(const fs::path& file, int variant) {
   return variant < 3;
 }
 
+// Reads rigs, whose poses are finite.
+template <std::vector<io::Rig> (*read)(const fs::path&)>
+void read_rigs_of(const fs::path& file) {
+  for (const io::Rig& rig : read(file))
+    for (const io::RigCamera& camera : rig.cameras)
+      require(!camera.pose || camera.pose->centre.allFinite(), "a pose is not finite");
+}
+
+template <std::vector<io::RigFrame> (*read)(const fs::path&)>
+void read_frames_of(const fs::path& file) {
+  read(file);
+}
+
+bool write_rig_config_seed(const fs::path& file, int variant) {
+  write_atomically(
+      file,
+      "[{\"cameras\": [{\"image_prefix\": \"a/\", \"ref_sensor\": true}, {\"image_prefix\": "
+      "\"b/\", "
+      "\"cam_from_rig_rotation\": [1, 0, 0, 0], \"cam_from_rig_translation\": [0.2, 0, 0], "
+      "\"sigma_translation\": 0.001, \"sigma_rotation\": 0.1}]}]\n");
+  return variant < 1;
+}
+
+bool write_rigs_seed(const fs::path& file, int variant) {
+  write_atomically(file, "# rigs\n1 2 CAMERA 1 CAMERA 2 1 1 0 0 0 0.2 0 0\n2 1 CAMERA 3\n");
+  return variant < 1;
+}
+
+bool write_frames_seed(const fs::path& file, int variant) {
+  write_atomically(file, "# frames\n1 1 1 0 0 0 0 0 0 2 CAMERA 1 1 CAMERA 2 2\n");
+  return variant < 1;
+}
+
+// One record: a rig of one camera, or a frame of one image.
+bool write_rigs_bin_seed(const fs::path& file, int variant) {
+  constexpr std::array<std::uint32_t, 6> kWords{1, 0, 7, 1, 0, 3};  // the count has two words
+  write_atomically(file, {reinterpret_cast<const char*>(kWords.data()), sizeof kWords});
+  return variant < 1;
+}
+
+bool write_frames_bin_seed(const fs::path& file, int variant) {
+  constexpr std::array<std::uint32_t, 4> kStart{1, 0, 1, 7};
+  constexpr std::array<double, 7> kPose{1, 0, 0, 0, 0, 0, 0};
+  constexpr std::array<std::uint32_t, 5> kImages{1, 0, 3, 9, 0};
+  std::string bytes(reinterpret_cast<const char*>(kStart.data()), sizeof kStart);
+  bytes.append(reinterpret_cast<const char*>(kPose.data()), sizeof kPose);
+  bytes.append(reinterpret_cast<const char*>(kImages.data()), sizeof kImages);
+  write_atomically(file, bytes);
+  return variant < 1;
+}
+
 }  // namespace
 
 std::span<const Reader> colmap_readers() {
@@ -122,7 +174,16 @@ std::span<const Reader> colmap_readers() {
       Reader{"colmap-points-bin", "points3D.bin", read_points_bin, kBinary},
       Reader{"colmap-cameras-txt", "cameras.txt", read_cameras_txt, kText},
       Reader{"colmap-images-txt", "images.txt", read_images_txt, kText},
-      Reader{"colmap-points-txt", "points3D.txt", read_points_txt, kText}};
+      Reader{"colmap-points-txt", "points3D.txt", read_points_txt, kText},
+      Reader{"colmap-rig-config", "rig_config.json", read_rigs_of<io::read_rig_config>,
+             write_rig_config_seed},
+      Reader{"colmap-rigs-bin", "rigs.bin", read_rigs_of<io::read_rigs_binary>,
+             write_rigs_bin_seed},
+      Reader{"colmap-rigs-txt", "rigs.txt", read_rigs_of<io::read_rigs_text>, write_rigs_seed},
+      Reader{"colmap-frames-bin", "frames.bin", read_frames_of<io::read_frames_binary>,
+             write_frames_bin_seed},
+      Reader{"colmap-frames-txt", "frames.txt", read_frames_of<io::read_frames_text>,
+             write_frames_seed}};
   return kReaders;
 }
 

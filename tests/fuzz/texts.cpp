@@ -2,10 +2,12 @@
 // Texts that users write, and lists of written files.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "io/artifacts/written_files.h"
 #include "io/bytes/json.h"
+#include "io/cameras/photograph_times.h"
 #include "io/cameras/position_file.h"
 #include "io/cameras/transform_file.h"
 #include "reader.h"
@@ -71,6 +73,16 @@ bool write_transform_seed(const fs::path& file, int variant) {
   return variant < 2;
 }
 
+void read_times_file(const fs::path& file) {
+  for (const auto& [name, seconds] : io::read_photograph_times(file))
+    require(!name.empty() && std::isfinite(seconds), "a time is not possible");
+}
+
+bool write_times_seed(const fs::path& file, int variant) {
+  write_atomically(file, "name,seconds\n# comment\na,b.png,1.5\nc.png, -2e3\n");
+  return variant < 1;
+}
+
 }  // namespace
 
 std::span<const Reader> text_readers() {
@@ -78,6 +90,7 @@ std::span<const Reader> text_readers() {
       Reader{"positions", "positions.txt", read_position_file, write_position_seed},
       Reader{"file-list", "list.json", read_file_list, write_list_seed},
       Reader{"split-list", "list.txt", read_split_list, write_split_seed},
+      Reader{"times", "times.csv", read_times_file, write_times_seed},
       Reader{"transform", "transform.txt", read_transform_file, write_transform_seed}};
   return kReaders;
 }

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rigs in bundle adjustment: cameras that are mounted together and take photographs at the same
+// time. A stated distance between two cameras of a rig gives the model its scale.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "axial/scene.h"
+
+namespace axial::pose {
+
+// Standard deviations of the pose of a camera in its rig within one frame: small movements of the
+// cameras against each other, and times of exposure that differ a little. Errors that all frames
+// share belong to RigCamera::sigma_translation and RigCamera::sigma_rotation.
+inline constexpr double kFrameTranslation = 0.0002;                // [m]
+inline constexpr double kFrameRotation = 0.02 * 3.14159265 / 180;  // [rad]
+// Standard deviations of a stated pose whose file states none.
+inline constexpr double kStatedTranslation = 0.0002;                // [m]
+inline constexpr double kStatedRotation = 0.02 * 3.14159265 / 180;  // [rad]
+
+// A camera of a rig. The frame of the rig is that of its reference camera.
+struct RigCamera {
+  std::string name;
+  // fixed: `stated` is exact. stated: it has standard deviations. free: it is not known.
+  enum class Known { fixed, stated, free } known = Known::free;
+  // From the frame of the rig to that of the camera [m]: as stated (not used if `free`), and the
+  // present value.
+  Pose stated, now;
+  // Standard deviations of `stated` per axis, above 0. Used if `known` is `stated`.
+  double sigma_translation = kStatedTranslation;  // [m]
+  double sigma_rotation = kStatedRotation;        // [rad]
+  // The camera takes its photographs this much later than the reference camera, in the unit of
+  // RigFrame::time. adjust() takes this number as known.
+  double delay = 0;
+
+  bool is_metric() const { return known != Known::free; }
+};
+
+// The photographs that a rig takes at one time: at most one of each camera.
+struct RigFrame {
+  struct Image {
+    std::size_t camera = 0;  // index into Rig::cameras
+    std::size_t image = 0;   // index into Bundle::images
+  };
+  std::vector<Image> images;
+  double time = 0;  // [s], or without known times the number of the frame in their order
+};
+
+struct Rig {
+  std::vector<RigCamera> cameras;  // the first camera is the reference camera, and is `fixed`
+  std::vector<RigFrame> frames;    // in ascending order of their times
+  bool has_seconds = false;        // false: RigFrame::time counts frames
+};
+
+// Standard deviations of the pose of a camera in its rig.
+struct RigSigma {
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();     // [rad]
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  // [m]
+};
+
+struct Bundle;
+
+// Removes the photographs without observations from the frames.
+void leave_out_unobserved(Bundle& bundle);
+
+// The pose of the camera of `image` in the frame of the camera of `reference`.
+Pose relative_pose(const Pose& image, const Pose& reference);
+
+// The factor that scales the bundle to metres: the median, over all pairs of cameras of a frame
+// whose poses are fixed or stated, of the stated distance divided by the distance in the bundle. 0
+// if there is no such pair.
+double scale_by_rigs(const Bundle& bundle);
+
+// Sets RigCamera::now: to `stated`, or for free cameras to the pose in the frame that is nearest to
+// the medians over all frames. Cameras without a frame in common with the reference camera keep
+// their values.
+void start_rigs(Bundle& bundle);
+
+// The velocity of the rig in each frame [m per unit of time], in the frame of the reference camera,
+// from the frame before and the frame after it, or from one of them. Empty for frames without a
+// photograph of the reference camera, and if both neighbours are more than 2.5 times as far away as
+// usual.
+std::vector<std::optional<Eigen::Vector3d>> rig_velocities(const Bundle& bundle, const Rig& rig);
+
+// How the poses of one camera fit its rig.
+struct RigFit {
+  std::size_t frames = 0;      // with photographs of this camera and of the reference camera
+  double translation_rms = 0;  // of the deviations from RigCamera::now and its delay [m]
+  double rotation_rms = 0;     // [rad]
+  double speed = 0;            // median speed of the rig [m per unit of time]; 0: not known
+  // The delay that fits the deviations along the velocity, with its standard deviation. Infinite:
+  // nothing determines it.
+  double delay = 0, delay_sigma = 0;  // in the unit of RigFrame::time
+
+  // The delay is more than three standard deviations, and moves the camera by more than 0.5 mm.
+  bool is_late() const;
+};
+
+// The fit of the camera with the index `camera`, not the reference camera. The delay is found by
+// robust least squares of the deviations from the stated pose, together with a constant deviation,
+// which has the standard deviations of the stated pose. Along the base, and for free cameras, the
+// constant is not known, because a wrong scale or pose looks the same.
+RigFit fit_of(const Bundle& bundle, const Rig& rig, std::size_t camera);
+
+// Sets RigCamera::delay of all cameras of the bundle where RigFit::is_late() holds.
+void set_delays(Bundle& bundle);
+
+}  // namespace axial::pose
