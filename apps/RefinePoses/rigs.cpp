@@ -101,6 +101,20 @@ Json numbers_or_null(const Eigen::Vector3d& values, double unit) {
   return list;
 }
 
+// The photographs of the camera in wrong frames, at most five by name.
+std::string wrong_frames(const pose::Bundle& bundle, const RigPart& part) {
+  constexpr std::size_t kMost = 5;
+  std::vector<std::string> names;
+  for (const std::size_t frame : part.fit.wrong) {
+    const auto& images = part.rig.frames[frame].images;
+    const auto image = std::ranges::find(images, part.index, &pose::RigFrame::Image::camera);
+    if (names.size() < kMost) names.push_back(bundle.images[image->image].name);
+  }
+  const std::size_t more = part.fit.wrong.size() - names.size();
+  return fmt::format("{}{}", fmt::join(names, ", "),
+                     more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
 // A pose in the form of rig_config.json.
 Json pose_json(const Pose& pose) {
   const Eigen::Quaterniond q(pose.rotation);
@@ -132,6 +146,7 @@ Json part_json(const RigPart& part) {
   json["sigma_rotation_degrees"] =
       part.sigma ? numbers_or_null(part.sigma->rotation, kDegrees) : Json(nullptr);
   json["frames"] = part.fit.frames;
+  json["wrong_frames"] = part.fit.wrong.size();
   json["rms_translation_m"] = part.fit.translation_rms;
   json["rms_rotation_degrees"] = part.fit.rotation_rms * kDegrees;
   json["timing"] = timing_json(part);
@@ -234,6 +249,12 @@ std::vector<std::string> rig_warnings(const pose::Bundle& bundle, const pose::Un
           "allow for it, but synchronised cameras are more accurate",
           camera.name, delay_in_words(part), part.fit.delay > 0 ? "later" : "earlier",
           part.rig.cameras[0].name, std::abs(part.fit.delay) * part.fit.speed * kMillimetres));
+    if (!part.fit.wrong.empty())
+      lines.push_back(
+          fmt::format("Rig: {} deviate from the rig, and count little: the photographs of a frame "
+                      "may have been "
+                      "taken at different times",
+                      wrong_frames(bundle, part)));
     if (camera.known == Known::stated && largest_contradiction(camera) > 3)
       lines.push_back(fmt::format(
           "Rig: the photographs do not fit the stated pose of {}: it moved by {:.2f} mm and {:.3f} "

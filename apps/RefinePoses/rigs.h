@@ -43,8 +43,8 @@ std::vector<std::string> input_lines(const std::vector<pose::Rig>& rigs);
 std::vector<std::string> rig_lines(const pose::Bundle& bundle, const pose::Uncertainty& known);
 
 // Returns a warning for each camera that takes its photographs at another time than the reference
-// camera, and for each camera whose refined pose is more than three of its standard deviations from
-// the stated one.
+// camera, for photographs that deviate from their rig, and for each camera whose refined pose is
+// more than three of its standard deviations from the stated one.
 std::vector<std::string> rig_warnings(const pose::Bundle& bundle, const pose::Uncertainty& known);
 
 // Returns the list "rigs" of the report; null if there is no rig. Standard deviations that are not

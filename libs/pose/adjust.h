@@ -137,8 +137,8 @@ struct AdjustReport {
 // `pixel_sigma` times Observation::sigma) and of the squared deviations from known distances,
 // positions, places, measured numbers and stated poses in rigs (in their standard deviations).
 // Positions and places have a Huber loss, too: deviations of more than three standard deviations
-// count linearly. So has the deviation of the photographs of a frame from their rig (rig.h), above
-// 4.1.
+// count linearly. The deviation of the photographs of a frame from their rig (rig.h) has Cauchy's
+// loss with the scale 4.1, so that a photograph of another frame counts little.
 //
 // Without knowledge of positions, places, points or poses, the cost does not depend on where the
 // model is in the world. The pose of one image therefore stays constant: of the first image with an

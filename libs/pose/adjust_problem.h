@@ -14,7 +14,7 @@ namespace axial::pose {
 
 // The Ceres problem of a bundle. Its first residual blocks belong to the observations, in the order
 // of the bundle. The blocks of the known distances, positions and places, of the measured numbers
-// of cameras, of the rigs and of the excluded motions follow.
+// of cameras, of the excluded motions and of the rigs follow, in this order.
 class AdjustProblem {
  public:
   // Both arguments must outlive this object. The constructor does not change the bundle. Throws

@@ -73,9 +73,9 @@ struct RefineReport {
 //
 // The rigs of the bundle get their start (start_rigs()).
 //
-// Throws an Error if the rule of distances applies and a known distance is zero in the model or
-// names a point that the bundle does not have. Throws an Error if the last rule applies and the
-// bundle has no observations.
+// Throws an Error if the rule of distances applies and a known distance is zero in the
+// model or names a point that the bundle does not have. Throws an Error if the last rule applies
+// and the bundle has no observations.
 void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 
 // Adjusts (adjust()) and filters (filter()) a bundle in metres for `options.rounds` rounds, then

@@ -67,8 +67,36 @@ Pose central_pose(std::vector<Pose> poses) {
   return poses[best];
 }
 
-double root_mean(double sum, std::size_t count) {
-  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0;
+// The deviation of a frame from the present pose of a camera.
+struct FrameFit {
+  std::size_t frame;             // index into Rig::frames
+  double translation, rotation;  // [m], [rad]
+
+  double in_sigmas() const {
+    return std::hypot(translation / kFrameTranslation, rotation / kFrameRotation);
+  }
+};
+
+// Counts the frames, and separates those that are wrong.
+void take_frames(const std::vector<FrameFit>& frames, RigFit& fit) {
+  constexpr double kWrong = 12, kTimesMedian = 5;
+  std::vector<double> all;
+  for (const FrameFit& frame : frames) all.push_back(frame.in_sigmas());
+  const double most = std::max(kWrong, kTimesMedian * mean_median(all));
+  double translation = 0, rotation = 0;
+  for (const FrameFit& frame : frames) {
+    if (frame.in_sigmas() > most) {
+      fit.wrong.push_back(frame.frame);
+      continue;
+    }
+    translation += frame.translation * frame.translation;
+    rotation += frame.rotation * frame.rotation;
+  }
+  fit.frames = frames.size();
+  const auto right =
+      static_cast<double>(std::max<std::size_t>(1, frames.size() - fit.wrong.size()));
+  fit.translation_rms = std::sqrt(translation / right);
+  fit.rotation_rms = std::sqrt(rotation / right);
 }
 
 // Deviations of a camera from its stated pose in its rig, with the velocities of the rig.
@@ -206,22 +234,20 @@ RigFit fit_of(const Bundle& bundle, const Rig& rig, std::size_t camera) {
   RigFit fit;
   Deviations found;
   std::vector<double> speeds;
-  double translation = 0, rotation = 0;
+  std::vector<FrameFit> frames;
   for (std::size_t i = 0; i < rig.frames.size(); ++i) {
     const auto reference = image_of(rig.frames[i], 0), image = image_of(rig.frames[i], camera);
     if (!reference || !image) continue;
     const Pose pose = relative_pose(bundle.images[*image].pose, bundle.images[*reference].pose);
-    ++fit.frames;
     const Eigen::Vector3d moved = one.delay * velocities[i].value_or(Eigen::Vector3d::Zero());
-    translation += (pose.centre - one.now.centre - moved).squaredNorm();
-    rotation += std::pow(angle_between(pose.rotation, one.now.rotation), 2);
+    frames.push_back({i, (pose.centre - one.now.centre - moved).norm(),
+                      angle_between(pose.rotation, one.now.rotation)});
     if (!velocities[i]) continue;
     found.deviations.push_back(pose.centre - (one.is_metric() ? one.stated : one.now).centre);
     found.velocities.push_back(*velocities[i]);
     speeds.push_back(velocities[i]->norm());
   }
-  fit.translation_rms = root_mean(translation, fit.frames);
-  fit.rotation_rms = root_mean(rotation, fit.frames);
+  take_frames(frames, fit);
   if (!speeds.empty()) fit.speed = mean_median(speeds);
   std::tie(fit.delay, fit.delay_sigma) = delay_of(found, one);
   return fit;

@@ -88,7 +88,11 @@ std::vector<std::optional<Eigen::Vector3d>> rig_velocities(const Bundle& bundle,
 
 // How the poses of one camera fit its rig.
 struct RigFit {
-  std::size_t frames = 0;      // with photographs of this camera and of the reference camera
+  std::size_t frames = 0;  // with photographs of this camera and of the reference camera
+  // The frames that deviate by more than 12 standard deviations (kFrameTranslation and
+  // kFrameRotation) and five times the median, as indices into Rig::frames: probably the
+  // photographs were taken at different times. They do not count in the two numbers below.
+  std::vector<std::size_t> wrong;
   double translation_rms = 0;  // of the deviations from RigCamera::now and its delay [m]
   double rotation_rms = 0;     // [rad]
   double speed = 0;            // median speed of the rig [m per unit of time]; 0: not known

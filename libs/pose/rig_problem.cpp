@@ -10,8 +10,9 @@
 namespace axial::pose {
 namespace {
 
-// A frame whose deviation is longer than this counts linearly [standard deviations]. The length of
-// six normal numbers is larger in 1 % of all cases.
+// The scale of Cauchy's loss of the deviation of a frame [standard deviations]. The length of six
+// normal numbers is larger in 1 % of all cases. A photograph of another frame deviates by hundreds
+// of standard deviations: with a loss that grows linearly, a few of them would change the scale.
 constexpr double kRigLoss = 4.1;
 
 void check_rig(const Rig& rig) {
@@ -65,7 +66,7 @@ void AdjustProblem::add_frames(std::size_t index) {
       problem_->AddResidualBlock(
           new Cost(new RigResidual{bundle_.images[a.image].pose, bundle_.images[b.image].pose,
                                    one.now, two.now, moved}),
-          new ceres::HuberLoss(kRigLoss), image_block(a.image), image_block(b.image),
+          new ceres::CauchyLoss(kRigLoss), image_block(a.image), image_block(b.image),
           rig_block(index, a.camera), rig_block(index, b.camera));
     }
   }

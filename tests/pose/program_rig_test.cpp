@@ -42,7 +42,7 @@ class RefinePosesWithRig : public RefinePoses {
 const std::string kRig = kInput + "-o out --refine none --rig rig_config.json ";
 
 TEST_F(RefinePosesWithRig, TakesTheScaleFromTheBase) {
-  start({.noise = 0.3, .seed = 11});
+  start({.points = 150, .noise = 0.3, .seed = 11});
   const std::string said = succeed(kRig);
   EXPECT_THAT(said, HasSubstr("Rig of left/, right/: 12 of 12 frames have several photographs"));
   EXPECT_THAT(said, Not(HasSubstr("only refraction determines the scale")));
@@ -59,7 +59,7 @@ TEST_F(RefinePosesWithRig, TakesTheScaleFromTheBase) {
 }
 
 TEST_F(RefinePosesWithRig, WarnsOfACameraThatIsLate) {
-  start({.delay = 0.04, .noise = 0.3, .seed = 12});
+  start({.points = 150, .delay = 0.04, .noise = 0.3, .seed = 12});
   EXPECT_THAT(succeed(kRig + "--rig-interval 0.4"), HasSubstr("ms later than left/"));
   const auto timing =
       io::read_json(folder_ / "out" / "report.json")["rigs"][0]["cameras"][0]["timing"];
@@ -75,7 +75,7 @@ TEST_F(RefinePosesWithRig, WarnsOfACameraThatIsLate) {
 }
 
 TEST_F(RefinePosesWithRig, EstimatesFreePoses) {
-  start({.noise = 0.3, .seed = 13});
+  start({.points = 150, .noise = 0.3, .seed = 13});
   succeed(kRig + "--rig-poses free --scale-from images:left/frame00.jpg,left/frame11.jpg," +
           fmt::format("{}", (truth_.images[0].pose.centre - truth_.images[22].pose.centre).norm()));
   const auto camera = io::read_json(folder_ / "out" / "report.json")["rigs"][0]["cameras"][0];

@@ -12,10 +12,12 @@ namespace {
 // The pose of the left camera at a time [s]: it looks down, and sways.
 Pose left_at(const RigSurveyOptions& options, double time) {
   const double half = options.interval * (options.frames - 1) / 2;
-  const Eigen::Vector3d centre(options.speed * (time - half), 0.02 * std::sin(1.3 * time),
-                               0.05 * std::sin(0.9 * time));
-  const Eigen::Vector3d target(centre.x() + 0.05 * std::sin(1.1 * time), 0.1, options.distance);
-  return looking_at(centre, target, 0.1 * std::sin(0.7 * time));
+  const double sway = options.sway;
+  const Eigen::Vector3d centre(options.speed * (time - half), 0.02 * sway * std::sin(1.3 * time),
+                               0.05 * sway * std::sin(0.9 * time));
+  const Eigen::Vector3d target(centre.x() + 0.05 * sway * std::sin(1.1 * time), 0.1,
+                               options.distance);
+  return looking_at(centre, target, 0.1 * sway * std::sin(0.7 * time));
 }
 
 Pose right_at(const RigSurveyOptions& options, double time) {

@@ -16,6 +16,7 @@ struct RigSurveyOptions {
   double speed = 0.3;     // along x [m/s]
   double interval = 0.4;  // between frames [s]
   double delay = 0;       // of the right camera [s]
+  double sway = 1;        // 0: the rig moves along a line and does not turn
   double distance = 1;    // to the ground [m]
   double noise = 0;       // standard deviation per axis [px]
   unsigned seed = 1;

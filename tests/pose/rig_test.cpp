@@ -94,6 +94,29 @@ TEST(Rig, LateCameraIsFoundAndKeepsTheScale) {
   }
 }
 
+// Along the track of a rig that does not turn, a wrong base and a delay look the same.
+TEST(Rig, DelayAlongTheBaseIsNotKnown) {
+  const RigSurveyOptions options{.base = {0.2, 0, 0}, .delay = 0.04, .sway = 0, .noise = 0.3};
+  const Bundle truth = rig_survey(options);
+  const Bundle found = refined(truth, true_rig(options, Known::stated));
+  const RigFit fit = fit_of(found, found.rigs[0], 1);
+  EXPECT_FALSE(fit.is_late());
+  EXPECT_GT(fit.delay_sigma, 0.01);
+}
+
+// A photograph of another frame does not bend the model, and is named.
+TEST(Rig, WrongFrameDoesNotChangeTheScale) {
+  const RigSurveyOptions options{.noise = 0.3, .seed = 4};
+  const Bundle truth = rig_survey(options);
+  Rig rig = true_rig(options, Known::stated);
+  std::swap(rig.frames[4].images[1].image, rig.frames[5].images[1].image);
+  const Bundle found = refined(truth, rig);
+  EXPECT_NEAR(pose_errors(found, truth).scale, 1, 0.001);
+  const RigFit fit = fit_of(found, found.rigs[0], 1);
+  EXPECT_EQ(fit.wrong, (std::vector<std::size_t>{4, 5}));
+  EXPECT_LT(fit.translation_rms, 0.0005);
+}
+
 // Errors of the stated base are errors of the scale, and the standard deviation of the scale says
 // so: its mean square over 30 draws has a relative standard deviation of 26 %.
 TEST(Rig, StandardDeviationOfTheScaleIncludesTheBase) {
