@@ -130,7 +130,7 @@ TEST_F(Densify, RefusesToOverwriteInputs) {
   }
 }
 
-TEST_F(Densify, ErrorsNameSettingsInTheWordsOfTheCaller) {
+TEST_F(Densify, ErrorsNameSettings) {
   fs::create_directories(folder_ / "no_masks");
   const fs::path scene = options_.survey.files.scene;
   const std::pair<const char*, std::function<void(Options&)>> cases[] = {
@@ -149,8 +149,10 @@ TEST_F(Densify, ErrorsNameSettingsInTheWordsOfTheCaller) {
   for (const auto& [words, change] : cases) {
     Options options = options_;
     change(options);
-    EXPECT_THAT(test::bracketed_error_of([&] { densify(options); }),
-                AllOf(HasSubstr(words), Not(ContainsRegex("--[a-z]"))));
+    const auto run = [&] { densify(options); };
+    EXPECT_THAT(test::error_of(run), AllOf(HasSubstr(words), Not(ContainsRegex("--[a-z]"))));
+    const std::string name = std::string(words).substr(0, std::string(words).find(' '));
+    EXPECT_THAT(test::bracketed_error_of(run), HasSubstr("<" + name));
   }
   const Context context({}, {}, {MemoryBudget::of_program(1)});
   EXPECT_THAT(test::error_of([&] { densify(options_, {}, context); }),
