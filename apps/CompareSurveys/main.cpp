@@ -23,6 +23,7 @@
 #include "scene/marked_faces.h"
 #include "settings.h"
 #include "survey/survey.h"
+#include "targets.h"
 
 namespace axial::apps {
 namespace {
@@ -105,6 +106,8 @@ void keep_inputs(const Settings& settings) {
     for (const fs::path& file : io::files_of_scene({scene, settings.working_folder, {}}))
       inputs.push_back(file);
   }
+  for (const fs::path& file : {settings.targets_before, settings.targets_after})
+    if (!file.empty()) inputs.push_back(file);
   survey::keep_inputs(outputs, inputs, "--output-file");
 }
 
@@ -172,15 +175,19 @@ map::MapFrame place_map(const Settings& settings, const Mesh& mesh, const LocalF
   return map::frame_with_up(up, frame);
 }
 
-void report_registration(const compare::Comparison& comparison) {
-  const compare::Registration& r = comparison.registration;
+// `with`: what the registration used.
+void report_motion(const compare::Registration& r, const std::string& with) {
   const Eigen::Vector3d shift = r.motion.translation * 1e3;
   const Eigen::Vector3d sigma = r.covariance.diagonal().tail<3>().cwiseMax(0).cwiseSqrt() * 1e3;
   const double angle = Eigen::AngleAxisd(r.motion.rotation).angle() * 180 / std::numbers::pi;
   log_info(
       "later survey moved by ({:.3f}, {:.3f}, {:.3f}) +- ({:.3f}, {:.3f}, {:.3f}) mm along the "
-      "map's axes and by {:.4f} degrees, with {:.1f} % of the ground",
-      shift.x(), shift.y(), shift.z(), sigma.x(), sigma.y(), sigma.z(), angle, 100 * r.share_used);
+      "map's axes and by {:.4f} degrees, with {}",
+      shift.x(), shift.y(), shift.z(), sigma.x(), sigma.y(), sigma.z(), angle, with);
+}
+
+void report_registration(const compare::Registration& r) {
+  report_motion(r, fmt::format("{:.1f} % of the ground", 100 * r.share_used));
   if (r.determined < 6)
     log_warning("the ground determines only {} of 6 directions of motion: it is too level",
                 r.determined);
@@ -241,6 +248,49 @@ void report(const compare::Comparison& comparison) {
   warn_of_large_changes(comparison);
 }
 
+// Both surveys in the frame of the earlier one.
+struct Surveys {
+  LocalFrame frame;
+  Mesh before, after;
+  NearSide near_before, near_after;
+};
+
+// Reads the surveys and the photographs of `settings`. `by_targets`: how the later survey is moved;
+// empty: not here.
+Surveys read_surveys(Settings& settings, const std::optional<ByTargets>& by_targets,
+                     const Context& context) {
+  Surveys surveys;
+  compare::SurveyPhotos& photos = settings.compare.photos;
+  surveys.frame = frame_of_survey(settings.before, settings.scene_before, context);
+  const LocalFrame later =
+      by_targets ? frame_of_survey(settings.after, settings.scene_after, context) : surveys.frame;
+  surveys.before = read_survey(settings.before, settings.scene_before, surveys.frame, context);
+  surveys.after = read_survey(settings.after, settings.scene_after, later, context);
+  photos.before = read_photos(settings, settings.scene_before, surveys.frame,
+                              {surveys.before, settings.before}, context);
+  photos.after =
+      read_photos(settings, settings.scene_after, later, {surveys.after, settings.after}, context);
+  return_freed_memory();
+  surveys.near_before = near_side(settings.before, photos.before, surveys.before, context);
+  surveys.near_after = near_side(settings.after, photos.after, surveys.after, context);
+  if (by_targets)
+    move_later(*by_targets, later, surveys.frame, surveys.after, photos.after,
+               surveys.near_after.facing);
+  return surveys;
+}
+
+void report(const compare::Comparison& comparison, const std::optional<ByTargets>& by_targets,
+            bool aligned) {
+  if (by_targets) {
+    report_motion(comparison.registration,
+                  fmt::format("{} targets", by_targets->found.used.size()));
+    report(*by_targets);
+  } else if (aligned) {
+    report_registration(comparison.registration);
+  }
+  report(comparison);
+}
+
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
@@ -251,29 +301,25 @@ int run(int argc, char** argv) {
                              settings.after.filename().string()};
   if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg);
   const OutputLock lock = lock_output(change_files(settings).difference);
-  const LocalFrame frame = frame_of_survey(settings.before, settings.scene_before, context);
-  facts.mesh_frame = frame;
-  Mesh before = read_survey(settings.before, settings.scene_before, frame, context);
-  Mesh after = read_survey(settings.after, settings.scene_after, frame, context);
-  settings.compare.photos.before =
-      read_photos(settings, settings.scene_before, frame, {before, settings.before}, context);
-  settings.compare.photos.after =
-      read_photos(settings, settings.scene_after, frame, {after, settings.after}, context);
-  return_freed_memory();
-  facts.aligned = settings.compare.align;
-  const NearSide near_before =
-      near_side(settings.before, settings.compare.photos.before, before, context);
-  const NearSide near_after =
-      near_side(settings.after, settings.compare.photos.after, after, context);
-  const map::MapFrame map_frame = place_map(settings, before, frame, near_before, near_after);
-  facts.is_georeferenced = has_system(settings, frame) && map_frame.axes.isIdentity(0);
+  const std::optional<ByTargets> by_targets = register_by_targets(settings);
+  if (settings.align == Align::automatic) settings.compare.align = !by_targets;
+  const Surveys surveys = read_surveys(settings, by_targets, context);
+  facts.mesh_frame = surveys.frame;
+  facts.aligned = settings.compare.align || by_targets;
+  const map::MapFrame map_frame =
+      place_map(settings, surveys.before, surveys.frame, surveys.near_before, surveys.near_after);
+  facts.is_georeferenced = has_system(settings, surveys.frame) && map_frame.axes.isIdentity(0);
+  if (by_targets) {
+    facts.by_targets = by_targets->found;
+    facts.labels = by_targets->labels;
+    settings.compare.registered = compare::on_map(by_targets->found, map_frame, surveys.frame);
+  }
   keep_inputs(settings);
   settings.compare.name_before = settings.before;
   settings.compare.name_after = settings.after;
   const compare::Comparison comparison =
-      compare::compare_surveys(before, after, map_frame, settings.compare, context);
-  if (settings.compare.align) report_registration(comparison);
-  report(comparison);
+      compare::compare_surveys(surveys.before, surveys.after, map_frame, settings.compare, context);
+  report(comparison, by_targets, settings.compare.align);
   const compare::ChangeFiles files = change_files(settings);
   compare::write_changes(files, comparison, facts);
   for (const fs::path& file : files.all()) log_info("wrote {}", file.string());

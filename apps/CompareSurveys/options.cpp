@@ -52,9 +52,19 @@ void declare_map(OptionList& list, Raw& raw, Settings& settings) {
 
 void declare_comparison(OptionList& list, Raw& raw, Settings& settings) {
   compare::ChangeOptions& changes = settings.compare.changes;
-  list.add_choice("align", &settings.compare.align, {{"none", false}, {"icp", true}},
+  list.add_choice("align", &settings.align,
+                  {{"none", Align::none},
+                   {"icp", Align::ground},
+                   {"targets", Align::targets},
+                   {"auto", Align::automatic}},
                   "none: both surveys have known positions in one frame; icp: the later "
-                  "survey is first moved onto the ground that did not change")
+                  "survey is first moved onto the ground that did not change; targets: it is moved "
+                  "by the targets that both surveys show; auto: targets if three or more are in "
+                  "both surveys, otherwise icp")
+      .add("targets", &settings.targets_before,
+           "places of the targets of the earlier survey, of RefinePoses (default: "
+           "target_places.json in the folder of the mesh or in refined/ there)")
+      .add("other-targets", &settings.targets_after, "the same for the later survey")
       .add("sigma-before", &raw.sigma_before,
            "standard deviation of the earlier surface [m] (default: the noise is estimated where "
            "nothing changed; give both or none)")
@@ -76,6 +86,10 @@ void declare_comparison(OptionList& list, Raw& raw, Settings& settings) {
 void check(const ParsedOptions& parsed, const Raw& raw, const Settings& settings) {
   if (given(parsed, "min-views") && settings.scene_before.empty() && settings.scene_after.empty())
     fail("--min-views needs --scene or --other-scene");
+  const bool by_targets = settings.align == Align::targets || settings.align == Align::automatic;
+  for (const char* option : {"targets", "other-targets"})
+    if (given(parsed, option) && !by_targets)
+      fail("--{} needs --align targets or --align auto", option);
   if (raw.sigma_before.has_value() != raw.sigma_after.has_value())
     fail("--sigma-{} is missing: both standard deviations must be given, or none",
          raw.sigma_before ? "after" : "before");
@@ -88,6 +102,7 @@ void convert(const Raw& raw, Options& options) {
       output_or(settings.output, without_known_extension(settings.before), "--output-file");
   settings.up = map::parse_up(raw.up, settings.epsg);
   if (raw.sigma_before) settings.compare.sigmas = {*raw.sigma_before, *raw.sigma_after};
+  settings.compare.align = settings.align == Align::ground;
 }
 
 }  // namespace

@@ -12,9 +12,14 @@
 
 namespace axial::apps {
 
+enum class Align { none, ground, targets, automatic };
+
 struct Settings {
   std::filesystem::path before, after;              // the meshes
   std::filesystem::path scene_before, scene_after;  // empty: not given
+  // The places of the targets; empty: those in the folders of the meshes.
+  std::filesystem::path targets_before, targets_after;
+  Align align = Align::none;
   std::filesystem::path working_folder;
   std::filesystem::path output;       // the names of the files without ".change.json" and so on
   std::optional<Eigen::Vector3d> up;  // in the world; empty: see place_map() in main.cpp

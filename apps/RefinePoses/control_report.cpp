@@ -7,8 +7,6 @@
 #include <cmath>
 #include <set>
 
-#include "io/bytes/json.h"
-
 namespace axial::apps {
 namespace {
 
@@ -156,33 +154,20 @@ nlohmann::ordered_json control_json(const ControlResults& results) {
   return json;
 }
 
-void write_target_places(const std::filesystem::path& file, const pose::Bundle& bundle,
-                         const pose::AdjustOptions& options,
-                         const std::vector<pose::Target>& targets, const LocalFrame& frame) {
-  std::vector<pose::PlaceIndex> places;
-  nlohmann::json list = nlohmann::json::array();
+control::TargetPlaces target_places(const pose::Bundle& bundle, const pose::AdjustOptions& options,
+                                    const std::vector<pose::Target>& targets,
+                                    const LocalFrame& frame) {
+  std::vector<pose::PlaceIndex> indices;
+  control::TargetPlaces places;
   for (const pose::Target& target : targets) {
     const auto point = std::ranges::find(bundle.points, target.source, &pose::BundlePoint::source);
     if (target.source == 0 || point == bundle.points.end()) continue;
-    places.push_back({Between::points, target.source});
-    const Eigen::Vector3d world = frame.to_world(point->position);
-    list.push_back({{"label", target.label},
-                    {"x", world.x()},
-                    {"y", world.y()},
-                    {"z", world.z()},
-                    {"photographs", photographs_of(bundle, target.source).size()}});
+    indices.push_back({Between::points, target.source});
+    places.targets.push_back({target.label, frame.to_world(point->position),
+                              photographs_of(bundle, target.source).size()});
   }
-  nlohmann::json json{{"targets", std::move(list)}, {"covariance_m2", nlohmann::json::array()}};
-  if (!places.empty()) {
-    const Eigen::MatrixXd covariance = pose::covariance_of_places(bundle, options, places);
-    for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
-      nlohmann::json row;
-      // io::write_json() writes numbers that are not finite as null.
-      for (Eigen::Index j = 0; j < covariance.cols(); ++j) row.push_back(covariance(i, j));
-      json["covariance_m2"].push_back(std::move(row));
-    }
-  }
-  io::write_json(file, json);
+  if (!indices.empty()) places.covariance = pose::covariance_of_places(bundle, options, indices);
+  return places;
 }
 
 }  // namespace axial::apps

@@ -3,12 +3,12 @@
 // places for later surveys.
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "control.h"
+#include "control/target_places.h"
 #include "pose/control_fit.h"
 #include "scene/local_frame.h"
 
@@ -50,10 +50,10 @@ std::vector<std::string> control_warnings(const ControlResults& results);
 // The object "control" of the report.
 nlohmann::ordered_json control_json(const ControlResults& results);
 
-// Writes the places of all targets in the world and their covariances (docs/formats.md, "Places of
-// targets"). `targets`: whose points are in the bundle.
-void write_target_places(const std::filesystem::path& file, const pose::Bundle& bundle,
-                         const pose::AdjustOptions& options,
-                         const std::vector<pose::Target>& targets, const LocalFrame& frame);
+// The places of those of `targets` whose points are in the bundle, in the world, and their
+// covariance.
+control::TargetPlaces target_places(const pose::Bundle& bundle, const pose::AdjustOptions& options,
+                                    const std::vector<pose::Target>& targets,
+                                    const LocalFrame& frame);
 
 }  // namespace axial::apps

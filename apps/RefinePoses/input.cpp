@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/naming.h"
 #include "base/same_file.h"
+#include "control/target_places.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/other_ports.h"
 #include "io/colmap/colmap_scene.h"
@@ -50,7 +51,7 @@ std::vector<fs::path> inputs_of(const Options& options, const fs::path& model) {
 
 std::vector<fs::path> outputs_of(const Options& options) {
   std::vector<fs::path> outputs{options.output / "housing.json", options.output / "report.json",
-                                options.output / kTargetPlaces};
+                                options.output / control::kTargetPlaces};
   for (const char* name : {"cameras", "images", "points3D"}) {
     const fs::path sparse = options.output / "sparse", other = options.output / "colmap-underwater";
     outputs.push_back(sparse / name += ".txt");

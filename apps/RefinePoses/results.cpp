@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/out_of_memory.h"
+#include "control/target_places.h"
 #include "io/cameras/geo_offset.h"
 #include "pose/depth_sigma.h"
 #include "stages.h"
@@ -43,8 +44,9 @@ void write_control(const Options& options, const Refined& refined, Results& resu
                   refined.report.wrong_control.end());
   results.control =
       control_results(bundle, results.options, refined.control.checks, std::move(left_out));
-  write_target_places(options.output / kTargetPlaces, bundle, results.options,
-                      options.refine.targets, refined.frame);
+  control::write_target_places(
+      options.output / control::kTargetPlaces,
+      target_places(bundle, results.options, options.refine.targets, refined.frame));
 }
 
 }  // namespace

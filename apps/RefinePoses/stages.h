@@ -68,9 +68,6 @@ struct Refined {
   AddedControl control;  // with --targets
 };
 
-// The file of the places of targets in the output folder.
-inline constexpr const char* kTargetPlaces = "target_places.json";
-
 // Refines the bundle of `input`. The housing of `input` becomes a usual housing if --housing
 // unknown is given and the photographs fit a dome, or if the stated kind of port ends in an
 // impossible port and the photographs fit another kind. Input that --scale-from names and that

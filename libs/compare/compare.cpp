@@ -261,7 +261,9 @@ Comparison placed(const Mesh& before, const Mesh& after, const map::MapFrame& fr
   result.grid = common(frame);
   require_memory(before, after, frame, result.grid, options, context);
   after_frame = frame;
-  if (options.align) {
+  if (options.registered) {
+    result.registration = *options.registered;
+  } else if (options.align) {
     context.memory().require(geometry::bytes_of_surface(before), "the registration");
     result.registration = naming(options.name_after, [&] {
       return register_surveys(before, after, frame, result.grid, options.registration,

@@ -36,13 +36,16 @@ Json json_of(const Volume& volume, std::size_t regions) {
           {"regions", regions}};
 }
 
+Json rows_of(const Eigen::Matrix4d& matrix) {
+  Json rows = Json::array();
+  for (int k = 0; k < 4; ++k) rows.push_back(list_of(matrix.row(k).transpose()));
+  return rows;
+}
+
 Json json_of(const Registration& registration, const Eigen::Matrix3d& axes, double sigma) {
   const RigidMotion& motion = registration.motion;
   const Eigen::AngleAxisd turn(motion.rotation);
   const Vector6d sigmas = registration.covariance.diagonal().cwiseMax(0).cwiseSqrt();
-  const Eigen::Matrix4d matrix = in_world(motion, axes).matrix();
-  Json rows = Json::array();
-  for (int k = 0; k < 4; ++k) rows.push_back(list_of(matrix.row(k).transpose()));
   return {{"converged", registration.converged},
           {"iterations", registration.iterations},
           {"determined_directions", registration.determined},
@@ -54,7 +57,23 @@ Json json_of(const Registration& registration, const Eigen::Matrix3d& axes, doub
           {"rotation_degrees", list_of(turn.angle() * kDegrees * turn.axis())},
           {"rotation_degrees_sigma", list_of(sigmas.head<3>() * kDegrees)},
           {"height_sigma", sigma},
-          {"matrix", rows}};
+          {"matrix", rows_of(in_world(motion, axes).matrix())}};
+}
+
+// Adds what the targets tell to the object of a registration.
+void add_targets(const TargetRegistration& found, const std::vector<std::string>& labels,
+                 Json& json) {
+  json["matrix"] = rows_of(found.motion.matrix());
+  Json targets = Json::array();
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    targets.push_back({{"label", labels[i]},
+                       {"moved", std::ranges::find(found.moved, i) != found.moved.end()},
+                       {"residual", list_of(found.residuals.col(static_cast<Eigen::Index>(i)))}});
+  json["targets"] = std::move(targets);
+  json["chi_squared"] = found.chi_squared;
+  json["degrees_of_freedom"] = found.freedom;
+  json["scale"] = found.scale;
+  json["scale_sigma"] = found.scale_sigma;
 }
 
 Json json_of(const PlaceAgreement& place) {
@@ -132,6 +151,7 @@ Json to_json(const Comparison& comparison, const ChangeFacts& facts) {
   json["registration"] = facts.aligned ? json_of(comparison.registration, comparison.frame.axes,
                                                  comparison.registration_sigma)
                                        : Json();
+  if (facts.by_targets) add_targets(*facts.by_targets, facts.labels, json["registration"]);
   json["regions"] = json_of(changes.regions);
   return json;
 }

@@ -4,10 +4,12 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "axial/compare.h"
+#include "compare/target_registration.h"
 #include "scene/local_frame.h"
 
 namespace axial::compare {
@@ -29,8 +31,11 @@ struct ChangeFacts {
   std::string before, after;      // names of the surveys
   bool is_georeferenced = false;  // y of the map is north
   bool aligned = false;           // the surveys were registered
-  std::string crs = {};           // WKT; empty: none
-  LocalFrame mesh_frame = {};     // of the surveys, for the axes that the maps state
+  // The registration, if it is one by targets, and the labels of these targets.
+  std::optional<TargetRegistration> by_targets = {};
+  std::vector<std::string> labels = {};
+  std::string crs = {};        // WKT; empty: none
+  LocalFrame mesh_frame = {};  // of the surveys, for the axes that the maps state
 };
 
 // All numbers of a comparison. docs/compare.md describes the fields.

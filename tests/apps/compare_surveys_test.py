@@ -311,6 +311,115 @@ class MapsOfTheSamePrefix(Wall):
             self.assertEqual(kept[name], data, name)
 
 
+class Targets(CompareTest):
+    """The later survey in another frame, a quarter turn away and far from the origin."""
+    PLATES = {"target 1": (0.1, 0.1, 0.2), "target 2": (1.5, 0.2, 0.1), "target 3": (1.4, 1.1, 0.3),
+              "target 4": (0.2, 1.0, 0.1), "target 5": (0.9, 0.5, 0.2)}
+    AT = (500000, 4500000, 30)
+
+    def setUp(self):
+        super().setUp()
+        vertices, faces = survey(after, 2)
+        write(self.after, ply([(-y, x, z) for x, y, z in vertices], faces, comments=OFFSET))
+        later = {label: (self.AT[0] - y, self.AT[1] + x, self.AT[2] + z) for label, (x, y, z) in self.PLATES.items()}
+        self.earlier_places = self.places("earlier.json", self.PLATES)
+        self.later_places = self.places("later.json", later)
+        self.files = ("--targets", self.earlier_places, "--other-targets", self.later_places)
+
+    def places(self, name, plates, sigma=0.001):
+        """The file of the places of plates with independent errors."""
+        path, size = self.path("work", name), 3 * len(plates)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        write(path, json.dumps({
+            "targets": [{"label": label, "x": x, "y": y, "z": z, "photographs": 3}
+                        for label, (x, y, z) in plates.items()],
+            "covariance_m2": [[sigma ** 2 if i == j else 0 for j in range(size)] for i in range(size)]}))
+        return path
+
+    def by_targets(self, *arguments):
+        return self.succeeds(*self.compare("--align", "targets", "--up", "0,0,1", *arguments)).stdout
+
+    def test_a_moved_block(self):
+        said = self.by_targets(*self.files)
+        self.assertNotIn("warning", said)
+        self.assertIn("5 of 5 common targets used", said)
+        report = self.report()
+        self.check_volumes(report)
+        registration = report["registration"]
+        for row, place in zip(registration["matrix"], self.PLATES["target 2"]):
+            later = (self.AT[0] - 0.2, self.AT[1] + 1.5, self.AT[2] + 0.1, 1)
+            self.assertAlmostEqual(sum(m * c for m, c in zip(row, later)), place, delta=1e-6)
+        self.assertEqual((registration["determined_directions"], registration["degrees_of_freedom"]), (6, 9))
+        # Two surveys of five plates with 1 mm each.
+        for sigma in registration["translation_sigma"]:
+            self.assertAlmostEqual(sigma, 0.001 * math.sqrt(2 / 5), delta=2e-5)
+        self.assertGreater(registration["height_sigma"], 0.0006)
+        self.assertAlmostEqual(registration["scale"], 1, delta=1e-6)
+
+    def test_scenes_are_moved_along(self):
+        scene = self.above("scene.mvs", 2, 0.7, 0.9)
+        said = self.succeeds(*self.compare("--align", "targets", *self.files, "--scene", scene)).stdout
+        self.assertNotIn("warning", said)
+        self.check_volumes(self.report())
+
+    def test_a_plate_that_moved_is_named_and_left_out(self):
+        moved = {**self.PLATES, "target 3": (1.4, 1.15, 0.28)}
+        said = self.by_targets("--targets", self.places("moved.json", moved), *self.files[2:])
+        self.assertIn("warning: target 3 moved by ", said)
+        self.assertIn("4 of 5 common targets used", said)
+        targets = self.report()["registration"]["targets"]
+        self.assertEqual([one["label"] for one in targets if one["moved"]], ["target 3"])
+        self.check_volumes(self.report())
+
+    def test_scales_that_differ_are_told(self):
+        larger = {label: tuple(1.02 * value for value in place) for label, place in self.PLATES.items()}
+        said = self.by_targets("--targets", self.places("larger.json", larger), *self.files[2:])
+        self.assertIn("lengths of the earlier survey are 2.000 +- ", said)
+        self.assertIn("% larger than those of the later one", said)
+
+    def test_files_beside_the_meshes_are_found(self):
+        os.makedirs(self.path("work", "later"))
+        os.rename(self.after, self.path("work", "later", "b.ply"))
+        self.after = self.path("work", "later", "b.ply")
+        missing = self.compare("--align", "targets")
+        self.refuses_and_keeps(f"{self.before}: no target_places.json in its folder or in refined/ there; --targets "
+                               "states the file\n", *missing)
+        os.renames(self.earlier_places, self.path("work", "refined", "target_places.json"))
+        self.refuses_and_keeps(f"{self.after}: no target_places.json in its folder", *missing)
+        os.rename(self.later_places, self.path("work", "later", "target_places.json"))
+        self.by_targets()
+        self.check_volumes(self.report())
+        write(self.path("work", "target_places.json"), "")
+        self.refuses_and_keeps(f"{self.path('work', 'target_places.json')}: ", *missing)
+
+    def test_auto_takes_the_ground_without_common_targets(self):
+        write(self.after, ply(*survey(after, 2)))
+        auto = self.compare("--align", "auto", "--up", "0,0,1")
+        self.assertIn("by the ground, because a survey has no places of targets", self.succeeds(*auto).stdout)
+        few = self.places("few.json", {label: self.PLATES[label] for label in ("target 1", "target 2")})
+        said = self.succeeds(*auto, "--targets", few, *self.files[2:]).stdout
+        self.assertIn("by the ground, because 2 targets are in both surveys", said)
+        self.assertIn("% of the ground", said)
+        self.assertNotIn("targets", self.report()["registration"])
+        said = self.succeeds(*auto, "--targets", self.earlier_places, "--other-targets",
+                             self.places("same.json", self.PLATES)).stdout
+        self.assertIn("5 of 5 common targets used", said)
+
+    def test_wrong_places_are_refused(self):
+        line = self.places("line.json", {f"target {i}": (i, 0, 0) for i in (1, 2, 3)})
+        few = self.places("few.json", {label: self.PLATES[label] for label in ("target 1", "target 2")})
+        self.refuses_each(
+            self.compare(),
+            ("--targets needs --align targets or --align auto", "--targets", few),
+            ("--other-targets needs --align", "--align", "icp", "--other-targets", few),
+            (f"{self.later_places}: 2 targets are in both surveys, but a registration needs three or more",
+             "--align", "targets", "--targets", few, *self.files[2:]),
+            (f"{self.later_places}: the targets target 1, target 2, target 3 lie on a line",
+             "--align", "targets", "--targets", line, *self.files[2:]),
+            ("none.json", "--align", "targets", "--targets", "none.json", *self.files[2:]),
+            (f"{self.before}: malformed", "--align", "targets", "--targets", self.before, *self.files[2:]))
+
+
 class WrongInput(CompareTest):
     def test_one_line_that_names_the_fault(self):
         self.refuses_each(

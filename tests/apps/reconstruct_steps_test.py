@@ -149,6 +149,27 @@ class WithStandIns(StandIns):
                          f"{self.folder}/before/scene_dense.mvs --other-scene {out}/scene_dense.mvs "
                          "--align none")
 
+    def test_an_earlier_survey_with_the_same_targets_is_aligned_by_them(self):
+        self.write("before/scene_dense_mesh.ply", "")
+        targets, options = self.write("targets.json", "{}"), ["--earlier", "before", "--without", "map,page"]
+        by_ground = lambda *more: self.assertIn("--align icp", self.compared(*options, *more))
+        by_ground("--targets", targets)
+        places = self.write("before/refined/target_places.json", "{}")
+        by_ground()
+        files = f"--targets {places} --other-targets {self.folder}/out/refined/target_places.json"
+        self.assertIn(f"--align auto {files}", self.compared(*options, "--targets", targets))
+        told = self.compared(*options, "--targets", targets, "--compare=--align none")
+        self.assertTrue(told.endswith(f"-o {self.folder}/out/scene --align none"), told)
+        self.assertEqual(self.done_before(*options, "--targets", targets), 10)
+        self.assertEqual(self.done_before(*options, "--targets", targets), 11)
+        places.write_text("other")
+        self.assertEqual(self.done_before(*options, "--targets", targets), 10)
+
+    def compared(self, *options):
+        """The command of CompareSurveys."""
+        self.succeeds(*options)
+        return self.commands()[-1]
+
     def test_another_scene_of_the_earlier_survey_is_compared_again(self):
         self.write("before/scene_dense_mesh.ply", "")
         scene = self.write("before/scene_dense.mvs", "")

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "control/read_control.h"
+#include "control/target_places.h"
 #include "control/write_control.h"
 #include "reader.h"
 
@@ -85,6 +86,33 @@ bool write_table_seed(const fs::path& file, int variant) {
   return variant < 3;
 }
 
+void read_file_of_places(const fs::path& file) {
+  const control::TargetPlaces read = control::read_target_places(file);
+  const fs::path copy = copy_of(file);
+  try {
+    control::write_target_places(copy, read);
+  } catch (const Error&) {
+    return;
+  }
+  const control::TargetPlaces again =
+      without_error([&] { return control::read_target_places(copy); });
+  require(again.targets.size() == read.targets.size() && again.covariance == read.covariance,
+          "the copy of a file is read as another value");
+  require(control::common_targets(read, again).size() <= read.targets.size(),
+          "a target is counted twice");
+}
+
+bool write_places_seed(const fs::path& file, int variant) {
+  control::TargetPlaces places;
+  if (variant == 1) {
+    places.targets = {{"target 7", {1, 2, 3}, 4}, {"a", {-1, 0.5, 1e6}, 2}};
+    places.covariance = Eigen::MatrixXd::Identity(6, 6);
+    places.covariance(5, 5) = control::kNotKnown;
+  }
+  if (variant < 2) control::write_target_places(file, places);
+  return variant < 2;
+}
+
 }  // namespace
 
 std::span<const Reader> control_readers() {
@@ -92,7 +120,8 @@ std::span<const Reader> control_readers() {
       Reader{"control-json", "control.json", read_file_of_control, write_json_seed},
       Reader{"control-gcp", "gcp_list.txt", read_file_of_control, write_gcp_seed},
       Reader{"control-xml", "markers.xml", read_file_of_control, write_xml_seed},
-      Reader{"control-table", "control.csv", read_file_of_control, write_table_seed}};
+      Reader{"control-table", "control.csv", read_file_of_control, write_table_seed},
+      Reader{"control-places", "places.json", read_file_of_places, write_places_seed}};
   return kReaders;
 }
 

@@ -126,8 +126,9 @@ TEST_F(ControlInput, ReportsBarsAndPlaces) {
   EXPECT_THAT(apps::control_warnings(results),
               ElementsAre("a line", HasSubstr("The check bar target 1-target 2 is off by")));
   const fs::path folder = test::empty_folder();
-  apps::write_target_places(folder / "places.json", bundle_, refine_.adjust, refine_.targets,
-                            {{1000, 2000, 0}});
+  control::write_target_places(
+      folder / "places.json",
+      apps::target_places(bundle_, refine_.adjust, refine_.targets, {{1000, 2000, 0}}));
   const auto places = nlohmann::json::parse(read_file(folder / "places.json"));
   ASSERT_THAT(places["targets"], SizeIs(2));
   EXPECT_NEAR(places["targets"][0]["x"].get<double>(),

@@ -7,6 +7,7 @@ from .programs import require, words_of
 
 FIND = "find"            # the value of --targets for which FindTargets runs
 FOUND = "targets.json"   # its result
+PLACES = "target_places.json"  # of RefinePoses
 FILES = ("targets", "bars", "control")
 
 

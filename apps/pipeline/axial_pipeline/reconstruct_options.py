@@ -73,7 +73,8 @@ def options(script_folder, description, words=None):
     parser.add_argument("--earlier", default="",
                         help="mesh of an earlier survey of the same place, or the output folder of its "
                         "reconstruction: find what changed. The positions of both surveys must agree "
-                        "to some decimetres (docs/compare.md)")
+                        "to some decimetres, unless both show three or more of the same coded targets "
+                        "(docs/compare.md)")
     parser.add_argument("--truth", default="", help="a true mesh, in the frame that --scale-from "
                         "positions: gives: the cloud is measured against it, and the page shows "
                         "the distances")

@@ -193,10 +193,19 @@ def not_given_again(options, words):
     return [word for option in options if not has_option(words, option[0]) for word in option]
 
 
-def words_about_surveys(words, earlier, scene):
-    """The options of CompareSurveys that the user did not give among `words`: registration, and the
+def words_about_registration(run, words):
+    """The options of CompareSurveys for the registration, and the files that it then reads: by targets if
+    both surveys have some, otherwise by the ground. `words`: of the user."""
+    places = [folder / "refined" / control.PLACES for folder in (pathlib.Path(run.given.earlier).parent, run.out)]
+    if not run.given.targets or not places[0].exists() or has_option(words, "--align"):
+        return [("--align", "icp")], []
+    return [("--align", "auto"), *zip(("--targets", "--other-targets"), places)], places
+
+
+def words_about_surveys(words, known, earlier, scene):
+    """The options of CompareSurveys that the user did not give among `words`: those that are `known`, and the
     scenes of both surveys if the earlier one has one beside its mesh."""
-    known = [("--align", "icp")]
+    known = list(known)
     if earlier.exists() and not any(has_option(words, option) for option in ("--scene", "--other-scene")):
         known += [("--scene", earlier), ("--other-scene", scene)]
     return not_given_again(known, words)
@@ -233,9 +242,10 @@ def survey_steps(run, wanted):
                        anew=run.made_before("map"))  # not every command writes all of them again
     if "compare" in wanted:
         earlier, words = pathlib.Path(given.earlier).with_name(run.scene.name), run.words("compare")
+        registration, places = words_about_registration(run, words)
         command = programs.compare_surveys(given.earlier, best_mesh(given, out), out / "scene",
-                                           *words_about_surveys(words, earlier, run.scene), *words)
-        yield run.step("compare", command, out / "scene.change.json", reads=[given.earlier, earlier],
+                                           *words_about_surveys(words, registration, earlier, run.scene), *words)
+        yield run.step("compare", command, out / "scene.change.json", reads=[given.earlier, earlier, *places[:1]],
                        anew=run.made_before("compare"))
     if "page" in wanted:
         command = programs.view_scene(run.scene, out / "scene_dense.ply", whole, out / "page", *REFRACTIVE,

@@ -148,6 +148,8 @@ struct SurveyPhotos {
 struct CompareOptions {
   double pixel = 0;    // width of a pixel of the map [m]; 0: vertex_distance() of the coarser mesh
   bool align = false;  // move the later survey onto the ground that did not change
+  // In place of `align`: the registration by which the later survey was moved before.
+  std::optional<Registration> registered = {};
   RegistrationOptions registration = {};
   // Standard deviations of both surfaces along their normals [m], above 0. Empty: estimated.
   struct Sigmas {

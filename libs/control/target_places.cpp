@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "control/target_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "control/labels.h"
+#include "io/bytes/json.h"
+
+namespace axial::control {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+const json& list_at(const json& content, const char* key, const std::string& name) {
+  const auto found = content.is_object() ? content.find(key) : content.end();
+  if (!content.is_object() || found == content.end() || !found->is_array())
+    fail("{}: {} must be a list", name, key);
+  return *found;
+}
+
+double finite_at(const json& value, const std::string& where) {
+  if (!value.is_number() || !std::isfinite(value.get<double>()))
+    fail("{} is {}, but must be a finite number", where, io::to_text(value));
+  return value.get<double>();
+}
+
+const json& member(const json& entry, const char* key, const std::string& where) {
+  const auto found = entry.find(key);
+  if (found == entry.end()) fail("{}.{} is missing", where, key);
+  return *found;
+}
+
+TargetPlace place_of(const json& entry, const std::string& where) {
+  if (!entry.is_object()) fail("{} must be an object", where);
+  TargetPlace place;
+  const json& label = member(entry, "label", where);
+  if (!label.is_string() || label.get_ref<const std::string&>().empty())
+    fail("{}.label is {}, but must be a text", where, io::to_text(label));
+  place.label = label.get<std::string>();
+  for (int k = 0; k < 3; ++k) {
+    const std::string key(1, "xyz"[k]);
+    place.world[k] = finite_at(member(entry, key.c_str(), where), where + "." + key);
+  }
+  const json& photographs = member(entry, "photographs", where);
+  if (!photographs.is_number_unsigned())
+    fail("{}.photographs is {}, but must be a number of photographs", where,
+         io::to_text(photographs));
+  place.photographs = photographs.get<std::size_t>();
+  return place;
+}
+
+Eigen::MatrixXd covariance_of(const json& rows, std::size_t targets, const std::string& name) {
+  const std::string where = name + ": covariance_m2";
+  const std::size_t size = 3 * targets;
+  if (rows.size() != size)
+    fail("{} has {} rows, but must have {}: three for each target", where, rows.size(), size);
+  const auto count = static_cast<Eigen::Index>(size);
+  Eigen::MatrixXd covariance(count, count);
+  for (std::size_t i = 0; i < size; ++i) {
+    if (!rows[i].is_array() || rows[i].size() != size)
+      fail("{}[{}] must be a list of {} numbers", where, i, size);
+    for (std::size_t j = 0; j < size; ++j)
+      covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+          rows[i][j].is_null() ? kInfinite
+                               : finite_at(rows[i][j], fmt::format("{}[{}][{}]", where, i, j));
+  }
+  return covariance;
+}
+
+void check_covariance(const Eigen::MatrixXd& covariance, const std::string& name) {
+  const auto is_known = [&](Eigen::Index i) { return std::isfinite(covariance(i, i)); };
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+    if (covariance(i, i) < 0)
+      fail("{}: covariance_m2[{}][{}] is {:g}, but a variance must be 0 or more", name, i, i,
+           covariance(i, i));
+    for (Eigen::Index j = 0; j < i; ++j) {
+      if (!is_known(i) || !is_known(j)) continue;
+      const double scale = std::sqrt(covariance(i, i)) * std::sqrt(covariance(j, j));
+      if (!(std::abs(covariance(i, j) - covariance(j, i)) <= 1e-6 * scale + 1e-15))
+        fail("{}: covariance_m2[{}][{}] is not covariance_m2[{}][{}]", name, i, j, j, i);
+      if (!(std::abs(covariance(i, j)) <= 1.001 * scale + 1e-15))
+        fail("{}: covariance_m2[{}][{}] is {:g}, more than its variances allow", name, i, j,
+             covariance(i, j));
+    }
+  }
+}
+
+bool is_determined(const TargetPlaces& places, std::size_t target) {
+  const auto first = static_cast<Eigen::Index>(3 * target);
+  return places.covariance.diagonal().segment<3>(first).allFinite();
+}
+
+}  // namespace
+
+TargetPlaces read_target_places(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  const json content = io::read_json(file);
+  const json& list = list_at(content, "targets", name);
+  const json& rows = list_at(content, "covariance_m2", name);
+  TargetPlaces places;
+  std::map<std::string, std::string> known;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string where = fmt::format("{}: targets[{}]", name, i);
+    places.targets.push_back(place_of(list[i], where));
+    const std::string& label = places.targets.back().label;
+    const auto [before, is_new] = known.emplace(label_key(label), label);
+    if (!is_new) fail("{}.label is {}, but {} is in the list before", where, label, before->second);
+  }
+  places.covariance = covariance_of(rows, list.size(), name);
+  check_covariance(places.covariance, name);
+  return places;
+}
+
+void write_target_places(const std::filesystem::path& file, const TargetPlaces& places) {
+  json list = json::array(), rows = json::array();
+  for (const TargetPlace& place : places.targets)
+    list.push_back({{"label", place.label},
+                    {"x", place.world.x()},
+                    {"y", place.world.y()},
+                    {"z", place.world.z()},
+                    {"photographs", place.photographs}});
+  for (Eigen::Index i = 0; i < places.covariance.rows(); ++i) {
+    json row;
+    // io::write_json() writes numbers that are not finite as null.
+    for (Eigen::Index j = 0; j < places.covariance.cols(); ++j)
+      row.push_back(places.covariance(i, j));
+    rows.push_back(std::move(row));
+  }
+  io::write_json(file, {{"targets", std::move(list)}, {"covariance_m2", std::move(rows)}});
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> common_targets(const TargetPlaces& first,
+                                                                const TargetPlaces& second) {
+  std::map<std::string, std::size_t> keys;
+  for (std::size_t i = 0; i < second.targets.size(); ++i)
+    if (is_determined(second, i)) keys.emplace(label_key(second.targets[i].label), i);
+  std::vector<std::pair<std::size_t, std::size_t>> common;
+  for (std::size_t i = 0; i < first.targets.size(); ++i) {
+    if (!is_determined(first, i)) continue;
+    const auto found = keys.find(label_key(first.targets[i].label));
+    if (found != keys.end()) common.emplace_back(i, found->second);
+  }
+  return common;
+}
+
+}  // namespace axial::control
