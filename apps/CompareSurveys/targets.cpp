@@ -23,8 +23,8 @@ fs::path places_beside(const fs::path& mesh, const char* option) {
                  beside = folder / control::kTargetPlaces;
   if (!fs::exists(inside)) return fs::exists(beside) ? beside : fs::path();
   if (fs::exists(beside))
-    fail("{}: {} is there, too; {} must state the file of the survey", beside.string(),
-         inside.string(), option);
+    fail_in(beside, "{} is there, too; {} must state the file of the survey", inside.string(),
+            option);
   return inside;
 }
 
@@ -32,8 +32,8 @@ fs::path places_beside(const fs::path& mesh, const char* option) {
 bool find_places(const fs::path& mesh, const char* option, bool must, fs::path& file) {
   if (file.empty()) file = places_beside(mesh, option);
   if (file.empty() && must)
-    fail("{}: no {} in its folder or in refined/ there; {} states the file", mesh.string(),
-         control::kTargetPlaces, option);
+    fail_in(mesh, "no {} in its folder or in refined/ there; {} states the file",
+            control::kTargetPlaces, option);
   return !file.empty();
 }
 

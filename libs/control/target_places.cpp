@@ -21,7 +21,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 const json& list_at(const json& content, const char* key, const std::string& name) {
   const auto found = content.is_object() ? content.find(key) : content.end();
   if (!content.is_object() || found == content.end() || !found->is_array())
-    fail("{}: {} must be a list", name, key);
+    fail_in(name, "{} must be a list", key);
   return *found;
 }
 
@@ -78,16 +78,16 @@ void check_covariance(const Eigen::MatrixXd& covariance, const std::string& name
   const auto is_known = [&](Eigen::Index i) { return std::isfinite(covariance(i, i)); };
   for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
     if (covariance(i, i) < 0)
-      fail("{}: covariance_m2[{}][{}] is {:g}, but a variance must be 0 or more", name, i, i,
-           covariance(i, i));
+      fail_in(name, "covariance_m2[{}][{}] is {:g}, but a variance must be 0 or more", i, i,
+              covariance(i, i));
     for (Eigen::Index j = 0; j < i; ++j) {
       if (!is_known(i) || !is_known(j)) continue;
       const double scale = std::sqrt(covariance(i, i)) * std::sqrt(covariance(j, j));
       if (!(std::abs(covariance(i, j) - covariance(j, i)) <= 1e-6 * scale + 1e-15))
-        fail("{}: covariance_m2[{}][{}] is not covariance_m2[{}][{}]", name, i, j, j, i);
+        fail_in(name, "covariance_m2[{}][{}] is not covariance_m2[{}][{}]", i, j, j, i);
       if (!(std::abs(covariance(i, j)) <= 1.001 * scale + 1e-15))
-        fail("{}: covariance_m2[{}][{}] is {:g}, more than its variances allow", name, i, j,
-             covariance(i, j));
+        fail_in(name, "covariance_m2[{}][{}] is {:g}, more than its variances allow", i, j,
+                covariance(i, j));
     }
   }
 }
