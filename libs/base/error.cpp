@@ -47,7 +47,7 @@ struct Error::Parts {
 
 Error::Error(const std::string& text, const std::filesystem::path& file)
     : std::runtime_error(as_message(in_words(text))),
-      parts_(std::make_shared<const Parts>(text, file)) {}
+      parts_(std::make_shared<const Parts>(Parts{text, file})) {}
 
 const std::string& Error::text() const {
   return parts_->text;
