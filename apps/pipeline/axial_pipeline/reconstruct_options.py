@@ -18,6 +18,7 @@ from .steps import record_file
 
 SKIPPED = [name for name, kind in KINDS.items() if kind.can_be_left_out]
 MOST_TILES = 1000  # as in the programs
+OPTIONAL = ("frames", "masks", "targets", "refine-mesh")  # steps that many runs do not have
 
 
 def options(script_folder, description, words=None):
@@ -179,7 +180,7 @@ def end_of(step, out):
 def is_current(step, out):
     """Whether the result of the step of this name was made from the present results of the steps
     before it."""
-    needed = [name for name in ORDER[:ORDER.index(step) + 1] if name not in ("frames", "masks", "refine-mesh")]
+    needed = [name for name in ORDER[:ORDER.index(step) + 1] if name not in OPTIONAL]
     ends = [end_of(name, out) for name in dict.fromkeys([*needed, step])]
     return all(ends) and all(later + doubt >= earlier for (earlier, _), (later, doubt)
                              in zip(ends, ends[1:]))
