@@ -144,6 +144,11 @@ std::optional<pose::KnownDistance> known_distance(const control::Bar& bar, const
   return {};
 }
 
+// A number is the label of a target, and never the name of a photograph.
+bool is_number(const std::string& label) {
+  return std::ranges::all_of(label, [](char c) { return c >= '0' && c <= '9'; });
+}
+
 std::optional<pose::KnownPlace> known_place(const control::ControlPoint& point,
                                             const Labels& labels,
                                             std::vector<std::string>& unused) {
@@ -152,6 +157,10 @@ std::optional<pose::KnownPlace> known_place(const control::ControlPoint& point,
   if (const pose::Target* const target = labels.target(point.label, why)) {
     place.index = target->source;
     return place;
+  }
+  if (is_number(point.label)) {
+    unused.push_back(fmt::format("{}: {}", point.where, why));
+    return {};
   }
   if (const auto image = labels.image(point.label, point.where)) {
     place.of = Between::images;
@@ -172,6 +181,7 @@ void check(const ControlOptions& options) {
   if (!options.bars.empty()) needs_targets("bars", options.bars.string());
   if (!options.control.empty()) needs_targets("control", options.control.string());
   if (!options.checks.empty()) needs_targets("checks", options.checks);
+  if (options.epsg > 0) needs_targets("epsg", std::to_string(options.epsg));
 }
 
 control::Control read_control(const ControlOptions& options) {
@@ -188,6 +198,8 @@ control::Control read_control(const ControlOptions& options) {
   if (options.bars != options.targets) add(options.bars, control::Role::bars);
   if (options.control != options.targets && options.control != options.bars)
     add(options.control, control::Role::points);
+  if (options.epsg > 0 && all.points.empty())
+    fail("--epsg {}: is for control points, and there are none", options.epsg);
   for (const std::string& note : all.notes) log_info("{}", note);
   if (!options.checks.empty())
     control::mark_checks(all, io::split_list(options.checks, "--checks " + options.checks));

@@ -13,7 +13,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Between = pose::KnownDistance::Between;
 
-constexpr double kDoubtful = 3;  // standard deviations of a check
+constexpr double kDoubtful = 3;  // standard deviations
 
 // The photographs that observe a point.
 std::set<std::size_t> photographs_of(const pose::Bundle& bundle, std::size_t source) {
@@ -34,7 +34,17 @@ std::size_t photographs_of_both(const pose::Bundle& bundle, const pose::KnownDis
       std::ranges::count_if(first, [&](std::size_t image) { return second.contains(image); }));
 }
 
-void add(const pose::Bundle& bundle, const pose::AdjustOptions& options,
+// Moves known and found coordinates.
+pose::PlaceFit in_world(pose::PlaceFit fit, const LocalFrame& frame) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double origin = frame.origin(static_cast<Eigen::Index>(k));
+    fit.coordinates[k].known += origin;
+    fit.coordinates[k].present += origin;
+  }
+  return fit;
+}
+
+void add(const pose::Bundle& bundle, const pose::AdjustOptions& options, const LocalFrame& frame,
          const std::vector<pose::KnownDistance>& distances,
          const std::vector<pose::KnownPlace>& places, bool check, ControlResults& results) {
   const pose::ControlFits fits = pose::control_fits(bundle, options, distances, places, !check);
@@ -43,8 +53,8 @@ void add(const pose::Bundle& bundle, const pose::AdjustOptions& options,
       results.bars.push_back(
           {distances[i].name, fits.distances[i], photographs_of_both(bundle, distances[i]), check});
   for (std::size_t i = 0; i < places.size(); ++i)
-    results.points.push_back(
-        {places[i].name, fits.places[i], photographs_of(bundle, places[i]), check});
+    results.points.push_back({places[i].name, in_world(fits.places[i], frame),
+                              photographs_of(bundle, places[i]), check});
 }
 
 void count_targets(const pose::Bundle& bundle, ControlResults& results) {
@@ -63,6 +73,7 @@ const char* use_of(bool check) {
 }
 
 std::string off_in_words(const pose::KnownFit& fit) {
+  if (!std::isfinite(fit.expected)) return "not determined";
   return fmt::format("{:+.2f} mm ({:.2f})", 1000 * fit.off(), 1000 * fit.expected);
 }
 
@@ -70,7 +81,7 @@ Json json_of(const pose::KnownFit& fit) {
   if (!std::isfinite(fit.known_sigma)) return nullptr;
   Json json{{"stated", fit.known}, {"stated_sigma", fit.known_sigma}, {"found", fit.present}};
   json["found_sigma"] = std::isfinite(fit.present_sigma) ? Json(fit.present_sigma) : Json(nullptr);
-  json["residual"] = fit.off();
+  json["residual"] = std::isfinite(fit.expected) ? Json(fit.off()) : Json(nullptr);
   json["expected_sigma"] = std::isfinite(fit.expected) ? Json(fit.expected) : Json(nullptr);
   return json;
 }
@@ -79,25 +90,27 @@ bool is_doubtful(const pose::KnownFit& fit) {
   return std::isfinite(fit.known_sigma) && std::abs(fit.deviation()) > kDoubtful;
 }
 
-std::string doubt(const std::string& name, const pose::KnownFit& fit) {
-  return fmt::format("The check {} is off by {:.3g} mm, {:.2g} standard deviations", name,
-                     1000 * fit.off(), std::abs(fit.deviation()));
+std::string doubt(bool check, const std::string& name, const pose::KnownFit& fit) {
+  return fmt::format("{} {} is off by {:.3g} mm, {:.2g} standard deviations",
+                     check ? "The check" : "The used value of", name, 1000 * fit.off(),
+                     std::abs(fit.deviation()));
 }
 
 }  // namespace
 
 ControlResults control_results(const pose::Bundle& bundle, const pose::AdjustOptions& options,
-                               ControlChecks checks, std::vector<std::string> left_out) {
+                               const LocalFrame& frame, ControlChecks checks,
+                               std::vector<std::string> left_out) {
   ControlResults results;
   results.left_out = std::move(left_out);
   count_targets(bundle, results);
-  add(bundle, options, options.distances, options.places, false, results);
+  add(bundle, options, frame, options.distances, options.places, false, results);
   pose::AdjustOptions of_checks;
   of_checks.distances = std::move(checks.distances);
   of_checks.places = std::move(checks.places);
   for (std::string& line : pose::leave_out_lost(bundle, of_checks))
     results.left_out.push_back(std::move(line));
-  add(bundle, options, of_checks.distances, of_checks.places, true, results);
+  add(bundle, options, frame, of_checks.distances, of_checks.places, true, results);
   return results;
 }
 
@@ -126,19 +139,20 @@ std::vector<std::string> control_lines(const ControlResults& results) {
 std::vector<std::string> control_warnings(const ControlResults& results) {
   std::vector<std::string> lines = results.left_out;
   for (const BarResult& bar : results.bars)
-    if (bar.check && is_doubtful(bar.fit)) lines.push_back(doubt(bar.name, bar.fit));
+    if (is_doubtful(bar.fit)) lines.push_back(doubt(bar.check, bar.name, bar.fit));
   for (const PointResult& point : results.points)
-    for (std::size_t k = 0; point.check && k < 3; ++k)
+    for (std::size_t k = 0; k < 3; ++k)
       if (is_doubtful(point.fit.coordinates[k]))
-        lines.push_back(
-            doubt(point.name + " in " + std::string("xyz")[k], point.fit.coordinates[k]));
+        lines.push_back(doubt(point.check, point.name + " in " + std::string("xyz")[k],
+                              point.fit.coordinates[k]));
   return lines;
 }
 
 nlohmann::ordered_json control_json(const ControlResults& results) {
-  Json json{{"targets", results.targets}, {"observations", results.observations},
-            {"rms_px", results.rms},      {"bars", Json::array()},
-            {"points", Json::array()},    {"left_out", results.left_out}};
+  Json json{{"targets", results.targets},  {"observations", results.observations},
+            {"rms_px", results.rms},       {"crs", results.crs},
+            {"bars", Json::array()},       {"points", Json::array()},
+            {"left_out", results.left_out}};
   for (const BarResult& bar : results.bars)
     json["bars"].push_back({{"name", bar.name},
                             {"use", use_of(bar.check)},

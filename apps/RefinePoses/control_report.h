@@ -30,21 +30,23 @@ struct PointResult {
 struct ControlResults {
   std::size_t targets = 0, observations = 0;  // that the adjustment used
   double rms = 0;                             // reprojection error of the targets [px]
+  std::string crs;                            // of the points: "EPSG:32617"; empty: not stated
   std::vector<BarResult> bars;
   std::vector<PointResult> points;
   std::vector<std::string> left_out;  // lines about what was not used or is doubtful
 };
 
-// The results of an adjustment of `bundle` with `options`. Checks that have no place any more are
-// added to the lines that were left out.
+// The results of an adjustment of `bundle` with `options`, which are in `frame`; the results are in
+// the world. Checks that have no place any more are added to the lines that were left out.
 ControlResults control_results(const pose::Bundle& bundle, const pose::AdjustOptions& options,
-                               ControlChecks checks, std::vector<std::string> left_out);
+                               const LocalFrame& frame, ControlChecks checks,
+                               std::vector<std::string> left_out);
 
 // The table for the log.
 std::vector<std::string> control_lines(const ControlResults& results);
 
-// Returns warnings: lines that were left out, and checks that are off by more than three standard
-// deviations.
+// Returns warnings: lines that were left out, and bars and points, used or checks, that are off by
+// more than three standard deviations.
 std::vector<std::string> control_warnings(const ControlResults& results);
 
 // The object "control" of the report.

@@ -11,7 +11,7 @@ namespace {
 void finish(const Options& options, const Input& input, const Refined& refined,
             const UnusedInput& unused, const std::optional<Registered>& registered,
             const Context& context) {
-  const bool scale_lost = !unused.lines().empty();
+  const bool scale_lost = !unused.lines().empty() && !options.refine.adjust.know_lengths();
   if (scale_lost) log_warning("The model has no scale: --scale-from is not used");
   Results results{refined.report,
                   errors_by_image(refined.before, refined.after.bundle),

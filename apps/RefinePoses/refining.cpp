@@ -14,15 +14,18 @@
 namespace axial::apps {
 namespace {
 
-// Known positions and places place the model, so its local frame must be near them. Without both,
-// the frame is that of the model.
-LocalFrame enter_local_frame(const LocalFrame& of_model, pose::AdjustOptions& adjust,
-                             std::vector<pose::KnownPlace>& checks) {
-  if (adjust.positions.empty() && adjust.places.empty()) return of_model;
+// Known positions and places place the model, so its local frame must be near them. Known poses,
+// and models that nothing places in the plane, keep the frame of the model.
+LocalFrame frame_of_result(const LocalFrame& of_model, const pose::AdjustOptions& adjust) {
   std::vector<Eigen::Vector3d> known = places_in_plan(adjust.places);
   for (const pose::KnownPosition& position : adjust.positions) known.push_back(position.metres);
-  const LocalFrame frame = frame_of(known, {});
-  if (frame.is_world()) return frame;
+  return adjust.poses_known || known.empty() ? of_model : frame_of(known, {});
+}
+
+// Moves all known coordinates to the frame of the result, and returns this frame.
+LocalFrame enter_local_frame(const LocalFrame& of_model, pose::AdjustOptions& adjust,
+                             std::vector<pose::KnownPlace>& checks) {
+  const LocalFrame frame = frame_of_result(of_model, adjust);
   for (pose::KnownPosition& position : adjust.positions)
     position.metres = frame.to_local(position.metres);
   enter(frame, adjust.places);

@@ -37,16 +37,19 @@ void write_sigmas(const Options& options, const Input& input, const pose::Colmap
 }
 
 // Sets Results::control and writes the places of the targets.
-void write_control(const Options& options, const Refined& refined, Results& results) {
+void write_control(const Options& options, const Input& input, const Refined& refined,
+                   Results& results) {
   const pose::Bundle& bundle = refined.after.bundle;
   std::vector<std::string> left_out = refined.control.unused;
   left_out.insert(left_out.end(), refined.report.wrong_control.begin(),
                   refined.report.wrong_control.end());
-  results.control =
-      control_results(bundle, results.options, refined.control.checks, std::move(left_out));
-  control::write_target_places(
-      options.output / control::kTargetPlaces,
-      target_places(bundle, results.options, options.refine.targets, refined.frame));
+  results.control = control_results(bundle, results.options, refined.frame, refined.control.checks,
+                                    std::move(left_out));
+  results.control->crs = input.control.crs;
+  control::TargetPlaces places =
+      target_places(bundle, results.options, options.refine.targets, refined.frame);
+  places.crs = input.control.crs;
+  control::write_target_places(options.output / control::kTargetPlaces, places);
 }
 
 }  // namespace
@@ -56,6 +59,8 @@ pose::Uncertainty write_results(const fs::path& folder,
                                 const Results& results,
                                 const std::function<pose::Uncertainty()>& compute) {
   constexpr const char* kReport = "report.json";
+  // That of another run does not belong to this model.
+  fs::remove(folder / control::kTargetPlaces);
   write_folder(folder, [&](const fs::path& staging) {
     write_model(staging);
     write_atomically(staging / kReport, report_json(results, nullptr));
@@ -90,7 +95,7 @@ pose::Uncertainty write(const Options& options, const Input& input, const Refine
         write_sigmas(options, input, after, known);
         if (!results.options.poses_known)
           known.depth_sigma = pose::depth_sigma(after.bundle, results.options, context);
-        if (options.control.any()) write_control(options, refined, results);
+        if (options.control.any()) write_control(options, input, refined, results);
         return known;
       });
 }

@@ -75,10 +75,13 @@ void append_new(std::vector<Item>& items, const std::vector<Item>& more) {
   for (const Item& item : more) {
     const auto known =
         std::ranges::find_if(items, [&](const Item& other) { return same_thing(item, other); });
-    if (known == items.end())
+    if (known == items.end()) {
       items.push_back(item);
-    else if (!same_numbers(item, *known))
+      continue;
+    }
+    if (!same_numbers(item, *known))
       fail_in(item.where, "{} has other numbers than at {}", name_of(item), known->where);
+    known->check |= item.check;
   }
 }
 

@@ -208,12 +208,19 @@ Bar bar_in(const Line& line) {
   return bar;
 }
 
-// Some users write names above ReefShape's columns.
+// Some users write names above ReefShape's columns. Error if they state another unit than the
+// metre.
 bool names_length(const Line& line) {
   const Fields fields = fields_of(line, delimiter_of(line.text));
-  if (fields.size() < 3) return false;
-  const std::string word = io::column_name(fields[2]).words;
-  return word == "length" || word == "distance";
+  if (fields.size() < 3 || io::number_in(fields[2])) return false;
+  const io::ColumnName name = io::column_name(fields[2]);
+  const bool is_length = name.words.starts_with("length") || name.words.starts_with("distance");
+  if (!is_length) return false;
+  const std::vector<std::string_view> words = split(name.words, ' ');
+  const bool states_metres = words.size() == 1 || (words.size() == 2 && io::is_metre(words[1]));
+  if (!states_metres || (!name.unit.empty() && !io::is_metre(name.unit)))
+    fail_in(line.where, "column '{}' must be in metres", fields[2]);
+  return true;
 }
 
 Control read_bars(const Table& table, const ControlReading& options) {

@@ -115,6 +115,10 @@ TargetPlaces read_target_places(const std::filesystem::path& file) {
   }
   places.covariance = covariance_of(rows, list.size(), name);
   check_covariance(places.covariance, name);
+  if (const auto crs = content.find("crs"); crs != content.end()) {
+    if (!crs->is_string()) fail_in(name, "crs is {}, but must be a text", io::to_text(*crs));
+    places.crs = crs->get<std::string>();
+  }
   return places;
 }
 
@@ -133,7 +137,9 @@ void write_target_places(const std::filesystem::path& file, const TargetPlaces& 
       row.push_back(places.covariance(i, j));
     rows.push_back(std::move(row));
   }
-  io::write_json(file, {{"targets", std::move(list)}, {"covariance_m2", std::move(rows)}});
+  json content{{"targets", std::move(list)}, {"covariance_m2", std::move(rows)}};
+  if (!places.crs.empty()) content["crs"] = places.crs;
+  io::write_json(file, content);
 }
 
 std::vector<std::pair<std::size_t, std::size_t>> common_targets(const TargetPlaces& first,

@@ -23,6 +23,7 @@ struct TargetPlaces {
   // Covariance [m^2] of all coordinates, three rows and columns for each target. Infinite where
   // nothing determines a coordinate.
   Eigen::MatrixXd covariance;
+  std::string crs = {};  // of the world, as Control::crs; empty: not stated
 };
 
 // The file in the output folder of RefinePoses.

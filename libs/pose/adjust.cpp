@@ -105,6 +105,11 @@ double AdjustOptions::sigma_before(const BundleCamera& camera, int number) const
   return stated > 0 ? stated : of_camera.default_sigma[k];
 }
 
+bool AdjustOptions::know_lengths() const {
+  const auto in_plan = [](const KnownPlace& place) { return place.knows(0) && place.knows(1); };
+  return !distances.empty() || !positions.empty() || std::ranges::count_if(places, in_plan) >= 2;
+}
+
 AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSink& sink,
                     const Context& context) {
   AdjustProblem adjusted(bundle, options);

@@ -90,8 +90,8 @@ struct AdjustOptions : Unknowns {
   std::vector<KnownDistance> distances;
   std::vector<KnownPosition> positions;
   std::vector<KnownPlace> places;
-  // True if a length or a place is known.
-  bool know_lengths() const { return !distances.empty() || !positions.empty() || !places.empty(); }
+  // True if these determine the scale: a distance or a position, or x and y of two places.
+  bool know_lengths() const;
   bool points_known = false;  // true: all points stay constant
   bool poses_known = false;   // true: all poses stay constant
 

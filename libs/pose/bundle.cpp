@@ -25,6 +25,11 @@ std::size_t point_of(const Bundle& bundle, std::size_t source) {
   return static_cast<std::size_t>(found - bundle.points.begin());
 }
 
+void move_places(Bundle& bundle, const Similarity& similarity) {
+  for (BundleImage& image : bundle.images) image.pose = similarity(image.pose);
+  for (BundlePoint& point : bundle.points) point.position = similarity(point.position);
+}
+
 std::vector<std::size_t> observations_by_image(const Bundle& bundle) {
   std::vector<std::size_t> counts(bundle.images.size());
   for (const Observation& observation : bundle.observations) ++counts[observation.image];

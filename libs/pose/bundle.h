@@ -15,6 +15,7 @@
 #include "axial/scene.h"
 #include "pose/housing_change.h"
 #include "pose/rig.h"
+#include "scene/decompositions.h"
 
 namespace axial::pose {
 
@@ -82,6 +83,9 @@ std::size_t point_of(const Bundle& bundle, std::size_t source);
 
 // The number of observations in each image, in the order of Bundle::images.
 std::vector<std::size_t> observations_by_image(const Bundle& bundle);
+
+// Moves all poses and points.
+void move_places(Bundle& bundle, const Similarity& similarity);
 
 // True if the bundle has points that are targets.
 bool has_targets(const Bundle& bundle);

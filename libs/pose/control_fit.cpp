@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 
+#include "pose/free_motions.h"
 #include "pose/known.h"
 #include "scene/decompositions.h"
 #include "scene/robust_similarity.h"
@@ -62,6 +64,11 @@ class Covariances {
   Eigen::MatrixXd covariance_;
 };
 
+// The weight that the loss gives to a known value, from its difference.
+double weight_of(double known_sigma, double off) {
+  return std::min(1.0, kHuber * known_sigma / std::abs(off));
+}
+
 // `variance`: of the present value.
 KnownFit fit_of(double known, double known_sigma, double present, double variance, bool used) {
   KnownFit fit{known, present, known_sigma, std::sqrt(variance), known_sigma};
@@ -71,7 +78,7 @@ KnownFit fit_of(double known, double known_sigma, double present, double varianc
     fit.expected = std::sqrt(own + variance);
     return fit;
   }
-  const double weight = std::min(1.0, kHuber * known_sigma / std::abs(fit.off()));
+  const double weight = weight_of(known_sigma, fit.off());
   constexpr double kLeast = 1.0 / 25;
   fit.expected = std::sqrt(std::max(kLeast * own, own - weight * variance));
   return fit;
@@ -85,19 +92,34 @@ KnownFit fit_of(const Bundle& bundle, const KnownDistance& known, const Covarian
                 covariances.of_length(known, between.normalized()), used);
 }
 
+// Whether motions of the model that no used coordinate determines change a coordinate of a place.
+bool is_free(const std::vector<Motion>& motions, const Eigen::Vector3d& place, int axis) {
+  constexpr double kNoChange = 1e-3;  // of the motion
+  return std::ranges::any_of(motions, [&](const Motion& motion) {
+    return std::abs(motion.shift_of(place)(axis)) > kNoChange;
+  });
+}
+
 PlaceFit fit_of(const Bundle& bundle, const KnownPlace& known, const Covariances& covariances,
-                bool used) {
+                const std::vector<Motion>& free, bool used) {
   PlaceFit fit;
   const Eigen::Vector3d place = place_in(bundle, known.of, known.index);
   for (int k = 0; k < 3; ++k)
     fit.coordinates[static_cast<std::size_t>(k)] = fit_of(
         known.metres(k), known.sigma(k), place(k), covariances.of_coordinate(known, k), used);
+  for (int k = 0; k < 3; ++k)
+    if (!used && is_free(free, place, k))
+      fit.coordinates[static_cast<std::size_t>(k)].expected =
+          std::numeric_limits<double>::infinity();
   return fit;
 }
 
-// Whether other numbers control a number, so that an error of it shows.
-bool is_controlled(const KnownFit& fit) {
-  return fit.expected * fit.expected > kLeastControl * fit.known_sigma * fit.known_sigma;
+// The part of a used value that other values control, so that an error of it shows: from 0, none,
+// to 1.
+double control_of(const KnownFit& fit) {
+  if (!std::isfinite(fit.known_sigma)) return 0;
+  return 1 -
+         weight_of(fit.known_sigma, fit.off()) * std::pow(fit.present_sigma / fit.known_sigma, 2);
 }
 
 // The coordinate of a place with the largest deviation.
@@ -138,7 +160,7 @@ struct Suspect {
   double deviation = 0;
   std::size_t index = 0;  // into distances or places
   bool is_place = false;
-  bool controlled = false;  // by other knowledge
+  double control = 0;  // control_of()
   std::string name, line;
 };
 
@@ -147,11 +169,11 @@ std::vector<Suspect> suspects(const Bundle& bundle, const AdjustOptions& options
   std::vector<Suspect> found;
   for (std::size_t i = 0; i < fits.distances.size(); ++i)
     if (const KnownFit& fit = fits.distances[i]; !options.distances[i].name.empty())
-      found.push_back({std::abs(fit.deviation()), i, false, is_controlled(fit),
+      found.push_back({std::abs(fit.deviation()), i, false, control_of(fit),
                        options.distances[i].name, line_of(options.distances[i], fit)});
   for (std::size_t i = 0; i < fits.places.size(); ++i) {
     const KnownFit& worst = worst_of(fits.places[i]);
-    found.push_back({std::abs(worst.deviation()), i, true, is_controlled(worst),
+    found.push_back({std::abs(worst.deviation()), i, true, control_of(worst),
                      options.places[i].name, line_of(options.places[i], fits.places[i])});
   }
   std::ranges::stable_sort(found, std::greater{}, &Suspect::deviation);
@@ -162,6 +184,17 @@ bool has_named(const AdjustOptions& options) {
   return !options.places.empty() ||
          std::ranges::any_of(options.distances,
                              [](const KnownDistance& known) { return !known.name.empty(); });
+}
+
+// The known values of which some may be left out, the largest deviation first.
+std::vector<Suspect> all_suspects(const Bundle& bundle, const AdjustOptions& options) {
+  if (options.points_known || options.poses_known || !has_named(options)) return {};
+  return suspects(bundle, options);
+}
+
+// Whether a value is wrong, by other values.
+bool is_wrong(const Suspect& one) {
+  return one.deviation > kWrong && one.control > kLeastControl;
 }
 
 AdjustOptions without(AdjustOptions options, const Suspect& one) {
@@ -178,10 +211,12 @@ AdjustOptions without(AdjustOptions options, const Suspect& one) {
 std::optional<Suspect> uncontrolled_now(std::span<const Suspect> before,
                                         const AdjustOptions& options, const Bundle& bundle) {
   if (!has_named(options)) return {};
-  for (Suspect& now : suspects(bundle, options)) {
-    if (now.controlled) continue;
+  constexpr double kRounding = 1e-3;
+  for (const Suspect& now : suspects(bundle, options)) {
+    if (now.control > kLeastControl) continue;
     const auto same = std::ranges::find(before, now.name, &Suspect::name);
-    if (same != before.end()) return *same;
+    // What was not controlled before, either, has lost nothing.
+    if (same != before.end() && same->control > 2 * std::max(now.control, kRounding)) return *same;
   }
   return {};
 }
@@ -195,7 +230,8 @@ void leave_out_other_scales(const Bundle& bundle, AdjustOptions& options,
                            place_in(bundle, known.between, known.second))
                               .norm();
   };
-  for (const KnownDistance& known : options.distances) scales.push_back(scale_of(known));
+  for (const KnownDistance& known : options.distances)
+    if (const double scale = scale_of(known); std::isfinite(scale)) scales.push_back(scale);
   if (scales.size() < 2) return;
   std::ranges::sort(scales);
   // Two lengths that contradict each other are both far from their mean.
@@ -204,7 +240,9 @@ void leave_out_other_scales(const Bundle& bundle, AdjustOptions& options,
   const double limit = scales.size() == 2 ? kOtherScale / 2 : kOtherScale;
   std::erase_if(options.distances, [&](const KnownDistance& known) {
     const double scale = scale_of(known);
-    if (known.name.empty() || std::abs(std::log(scale / usual)) <= std::log1p(limit)) return false;
+    if (known.name.empty() || !std::isfinite(scale) ||
+        std::abs(std::log(scale / usual)) <= std::log1p(limit))
+      return false;
     lines.push_back(fmt::format("{} is left out: {:.4g} m do not fit the other lengths, {}",
                                 known.name, known.metres, unit_hint(scale / usual)));
     return true;
@@ -234,8 +272,10 @@ ControlFits control_fits(const Bundle& bundle, const AdjustOptions& options,
   ControlFits fits;
   for (const KnownDistance& known : distances)
     fits.distances.push_back(fit_of(bundle, known, covariances, used));
+  const std::vector<Motion> free =
+      used || options.poses_known ? std::vector<Motion>() : free_motions(bundle, options);
   for (const KnownPlace& known : places)
-    fits.places.push_back(fit_of(bundle, known, covariances, used));
+    fits.places.push_back(fit_of(bundle, known, covariances, free, used));
   return fits;
 }
 
@@ -294,20 +334,31 @@ std::vector<std::string> leave_out_outliers(const Bundle& bundle, AdjustOptions&
 
 bool leave_out_worst(const Bundle& bundle, AdjustOptions& options,
                      std::vector<std::string>& lines) {
-  if (options.points_known || options.poses_known || !has_named(options)) return false;
-  std::vector<Suspect> found = suspects(bundle, options);
-  std::erase_if(found, [](const Suspect& one) { return !one.controlled; });
-  if (found.empty() || found.front().deviation <= kWrong) return false;
-  const Suspect& worst = found.front();
-  AdjustOptions others = without(options, worst);
-  if (const auto other = uncontrolled_now(found, others, bundle)) {
-    lines.push_back(fmt::format("{}; {}: the two contradict each other, and both are kept",
-                                worst.line, other->line));
-    return false;
+  const std::vector<Suspect> found = all_suspects(bundle, options);
+  for (const Suspect& one : found) {
+    if (!is_wrong(one)) continue;
+    AdjustOptions others = without(options, one);
+    if (uncontrolled_now(found, others, bundle)) continue;
+    lines.push_back(one.line + "; it is left out");
+    options = std::move(others);
+    return true;
   }
-  lines.push_back(worst.line + "; it is left out");
-  options = std::move(others);
-  return true;
+  return false;
+}
+
+std::vector<std::string> contradictions(const Bundle& bundle, const AdjustOptions& options) {
+  const std::vector<Suspect> found = all_suspects(bundle, options);
+  std::vector<std::string> lines;
+  std::set<std::string> named;
+  for (const Suspect& one : found) {
+    if (!is_wrong(one)) continue;
+    const auto other = uncontrolled_now(found, without(options, one), bundle);
+    if (!other || named.contains(one.name)) continue;
+    named.insert({one.name, other->name});
+    lines.push_back(fmt::format("{}; {}: the two contradict each other, and both are kept",
+                                one.line, other->line));
+  }
+  return lines;
 }
 
 }  // namespace axial::pose

@@ -17,7 +17,8 @@ struct KnownFit {
   double known_sigma = 0;         // standard deviation of `known`
   double present_sigma = 0;       // standard deviation of `present`
   // The standard deviation of the difference: the two sigmas are independent for a check, and
-  // `known` is a part of `present` otherwise. At least a fifth of `known_sigma`.
+  // `known` is a part of `present` otherwise. At least a fifth of `known_sigma`. Infinite: the used
+  // places do not determine `present` of a check, so that the difference means nothing.
   double expected = 0;
 
   double off() const { return present - known; }
@@ -56,10 +57,13 @@ std::vector<std::string> leave_out_lost(const Bundle& bundle, AdjustOptions& opt
 // lengths; of two such lengths, both.
 std::vector<std::string> leave_out_outliers(const Bundle& bundle, AdjustOptions& options);
 
-// Removes the length or place with the largest deviation (KnownFit) if it is above 4. Returns
-// whether one was removed; the bundle must then be adjusted again. If another length or place is
-// not controlled by any other without it, the two contradict each other, and nothing tells which is
-// wrong: both stay. `lines` gets a line in both cases.
+// Removes the length or place with the largest deviation (KnownFit) above 4, and adds a line to
+// `lines`. Two values contradict each other if nothing else controls the second without the first:
+// nothing tells which of them is wrong, and both stay. Returns whether a value was removed; the
+// bundle must then be adjusted again.
 bool leave_out_worst(const Bundle& bundle, AdjustOptions& options, std::vector<std::string>& lines);
+
+// A line for each pair of values that contradict each other.
+std::vector<std::string> contradictions(const Bundle& bundle, const AdjustOptions& options);
 
 }  // namespace axial::pose

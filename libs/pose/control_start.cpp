@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pose/control_start.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -35,11 +37,6 @@ bool knows_plan(const KnownPlace& place) {
   return place.knows(0) && place.knows(1);
 }
 
-void move(Bundle& bundle, const Similarity& similarity) {
-  for (BundleImage& image : bundle.images) image.pose = similarity(image.pose);
-  for (BundlePoint& point : bundle.points) point.position = similarity(point.position);
-}
-
 Eigen::Vector3d against_view(const Bundle& bundle) {
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
   for (const BundleImage& image : bundle.images) up -= image.pose.rotation.row(2).transpose();
@@ -65,29 +62,42 @@ Eigen::Vector3d upward(const Places& heights, const Eigen::Vector3d& guess) {
   return (in_plane + std::copysign(across, normal.dot(guess)) * normal).normalized();
 }
 
-// Turns and shifts the model in the plane of x and y.
-Similarity in_plan(Places plan, bool with_scale) {
-  plan.present.row(2).setZero();
-  plan.known.row(2).setZero();
-  if (plan.present.cols() >= 2) return best_similarity(plan.present, plan.known, with_scale);
-  Similarity shift;
-  if (plan.present.cols() == 1) shift.translation = (plan.known - plan.present).col(0);
-  return shift;
+// The least-squares similarity in the plane of x and y: a turn about the vertical, a shift and, if
+// `with_scale`, a scale. With x + iy as complex numbers p (present) and k (known), both less their
+// means, the turn and scale are the complex number sum(conj(p) k) / sum(|p|^2).
+Similarity in_plan(const Places& plan, bool with_scale) {
+  Similarity result;
+  if (plan.present.cols() == 0) return result;
+  const Eigen::Vector2d present_middle = plan.present.topRows<2>().rowwise().mean();
+  const Eigen::Vector2d known_middle = plan.known.topRows<2>().rowwise().mean();
+  const Eigen::Matrix2Xd p = plan.present.topRows<2>().colwise() - present_middle;
+  const Eigen::Matrix2Xd k = plan.known.topRows<2>().colwise() - known_middle;
+  const Eigen::Vector2d turn(
+      p.cwiseProduct(k).sum(),
+      (p.row(0).cwiseProduct(k.row(1)) - p.row(1).cwiseProduct(k.row(0))).sum());
+  if (turn.norm() > 0 && p.squaredNorm() > 0) {
+    result.rotation = Eigen::AngleAxisd(std::atan2(turn.y(), turn.x()), Eigen::Vector3d::UnitZ())
+                          .toRotationMatrix();
+    if (with_scale) result.scale = turn.norm() / p.squaredNorm();
+  }
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  middle.head<2>() = present_middle;
+  result.translation.head<2>() = known_middle - result(middle).head<2>();
+  return result;
+}
+
+Places whole_places(const Bundle& bundle, const AdjustOptions& options) {
+  return places_of(bundle, options, [](const KnownPlace& place) { return place.knows_all(); });
 }
 
 }  // namespace
 
-bool determine_scale(const AdjustOptions& options) {
-  return !options.distances.empty() || std::ranges::count_if(options.places, knows_plan) >= 2;
-}
-
 void place_by_control(Bundle& bundle, const AdjustOptions& options) {
   if (options.places.empty()) return;
-  const Places whole =
-      places_of(bundle, options, [](const KnownPlace& place) { return place.knows_all(); });
+  const Places whole = whole_places(bundle, options);
   if (whole.known.cols() >= 3 && relative_width(whole.known) >= kLineWidth &&
       relative_width(whole.present) >= kLineWidth)
-    return move(bundle, robust_similarity(whole.present, whole.known).similarity);
+    return move_places(bundle, robust_similarity(whole.present, whole.known).similarity);
   const auto heights = [&] {
     return places_of(bundle, options, [](const KnownPlace& place) { return place.knows(2); });
   };
@@ -95,13 +105,26 @@ void place_by_control(Bundle& bundle, const AdjustOptions& options) {
   upright.rotation = Eigen::Quaterniond::FromTwoVectors(upward(heights(), against_view(bundle)),
                                                         Eigen::Vector3d::UnitZ())
                          .toRotationMatrix();
-  move(bundle, upright);
-  move(bundle, in_plan(places_of(bundle, options, knows_plan), options.distances.empty()));
+  move_places(bundle, upright);
+  move_places(bundle, in_plan(places_of(bundle, options, knows_plan), options.distances.empty()));
   if (const Places high = heights(); high.known.cols() > 0) {
     Similarity shift;
     shift.translation.z() = (high.known - high.present).row(2).mean();
-    move(bundle, shift);
+    move_places(bundle, shift);
   }
+}
+
+std::vector<std::string> signs_of_a_mirror(const Bundle& bundle, const AdjustOptions& options) {
+  const Places whole = whole_places(bundle, options);
+  if (whole.known.cols() < 3 || relative_width(whole.known) < kLineWidth ||
+      relative_width(whole.present) < kLineWidth)
+    return {};
+  if (const MirroredFit fit = mirrored_fit(whole.present, whole.known); fit.better)
+    return {"Control points: " + mirrored_line(fit)};
+  if (against_view(bundle).z() > 0) return {};
+  return {fmt::format(
+      "Control points turn the model over: the cameras look upwards. If they looked down, {}",
+      kCausesOfMirror)};
 }
 
 }  // namespace axial::pose

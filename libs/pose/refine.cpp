@@ -37,8 +37,10 @@ double known_scale(const Bundle& bundle, const AdjustOptions& options) {
     const double length = (place_in(bundle, known.between, known.first) -
                            place_in(bundle, known.between, known.second))
                               .norm();
-    if (!(length > 0)) fail("a known length of {} m is zero in the model", known.metres);
-    scales.push_back(known.metres / length);
+    if (length > 0)
+      scales.push_back(known.metres / length);
+    else if (known.name.empty())
+      fail("a known length of {} m is zero in the model", known.metres);
   }
   return scales.empty() ? 0 : upper_median(std::move(scales));
 }
@@ -47,9 +49,7 @@ double known_scale(const Bundle& bundle, const AdjustOptions& options) {
 bool place_by_positions(Bundle& bundle, const std::vector<KnownPosition>& positions) {
   if (positions.size() < 3) return false;
   const auto [centres, places] = centres_and_positions(bundle, positions);
-  const Similarity place = best_similarity(centres, places);
-  for (BundleImage& image : bundle.images) image.pose = place(image.pose);
-  for (BundlePoint& point : bundle.points) point.position = place(point.position);
+  move_places(bundle, best_similarity(centres, places));
   return true;
 }
 
@@ -172,8 +172,9 @@ void scale_places(Bundle& bundle, double scale) {
   for (BundlePoint& point : bundle.points) point.position *= scale;
 }
 
-// Targets, whose places depend on the scale, determine the scale: each step improves both.
-void scale_by_targets(Bundle& bundle, const AdjustOptions& options) {
+// Known lengths and places scale and place the model. The places of targets depend on the scale:
+// each step improves both.
+void scale_by_control(Bundle& bundle, const AdjustOptions& options) {
   constexpr int kSteps = 4;
   for (int step = 0; step < kSteps; ++step) {
     if (const double known = known_scale(bundle, options); known > 0) scale_places(bundle, known);
@@ -189,12 +190,12 @@ void bring_to_metres(Bundle& bundle, const AdjustOptions& options) {
       scale_places(bundle, kUsualDistance / median_distance(bundle));
       triangulate(bundle);
     }
-    if (!determine_scale(options)) {
+    if (!options.know_lengths()) {
       const double by_rigs = scale_by_rigs(bundle);
       scale_places(bundle, by_rigs > 0 ? by_rigs : best_scale(bundle));
     }
-    if (has_targets(bundle))
-      scale_by_targets(bundle, options);
+    if (has_targets(bundle) || !options.places.empty())
+      scale_by_control(bundle, options);
     else if (const double known = known_scale(bundle, options); known > 0)
       scale_places(bundle, known);
   }
@@ -244,15 +245,24 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context&
   judge(bundle, 1, adjusting, report);
   judge_control(bundle, adjusting, report);
   report.last = adjuster.adjust(bundle, adjusting, "last adjustment");
-  if (options.keep_stated && keep_stated_numbers(bundle, adjusting))
+  const auto leave_out_wrong = [&] {
+    while (leave_out_worst(bundle, adjusting, report.wrong_control))
+      report.last = adjuster.adjust(bundle, adjusting, "adjustment without a wrong bar or place");
+  };
+  // A wrong bar moves the numbers of the port, so it goes before these are judged.
+  leave_out_wrong();
+  if (options.keep_stated && keep_stated_numbers(bundle, adjusting)) {
     report.last = adjuster.adjust(bundle, adjusting, "adjustment with stated numbers");
-  while (leave_out_worst(bundle, adjusting, report.wrong_control))
-    report.last = adjuster.adjust(bundle, adjusting, "adjustment without a wrong bar or place");
+    leave_out_wrong();
+  }
   filter(bundle, limits, &report.dropped);
   leave_out_unobserved(bundle);
   if (bundle.observations.empty()) fail("no observation fits refractive cameras");
   report.lost = lost_knowledge(bundle, adjusting);
   judge_control(bundle, adjusting, report);
+  for (const auto& lines :
+       {contradictions(bundle, adjusting), signs_of_a_mirror(bundle, adjusting)})
+    report.wrong_control.insert(report.wrong_control.end(), lines.begin(), lines.end());
   report.distances = adjusting.distances;
   report.places = adjusting.places;
   report.position_distances = position_distances(bundle, report.positions);

@@ -3,9 +3,10 @@
 
 A dive is a folder of photographs with the true model. What the diver states about lens and housing may
 differ from the truth. The errors are those of the refined sparse points, placed by the true camera centres
-only."""
+only. Centres on a line do not determine the turn about this line: it comes from the true view directions."""
 
 import dataclasses
+import itertools
 import json
 import math
 import pathlib
@@ -18,7 +19,7 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from support import runs  # noqa: E402
-from support.colmap_text import baseline  # noqa: E402
+from support.colmap_text import baseline, centres, images_of  # noqa: E402
 from support.runs import BIN, PROGRAMS, ROOT, measured  # noqa: E402
 
 SMALL = ("--medium", "water", "--truth", 0, "--width", 480, "--height", 360, "--coarseness", 2, "--samples", 2)
@@ -125,26 +126,74 @@ def run(brought, data, out, until="poses"):
     return outcome
 
 
-def write_points(model, file):
-    """The points of a COLMAP text model as a PLY file."""
+def points_of(model):
+    """The places of the points of a COLMAP text model."""
     with open(model / "points3D.txt") as lines:
-        points = [" ".join(line.split()[1:4]) for line in lines if not line.startswith("#")]
+        return [tuple(map(float, line.split()[1:4])) for line in lines if not line.startswith("#")]
+
+
+def write_points(points, file):
+    """Writes points as a PLY file."""
     axes = "".join(f"property float {axis}\n" for axis in "xyz")
     file.write_text(f"ply\nformat ascii 1.0\nelement vertex {len(points)}\n{axes}end_header\n"
-                    + "\n".join(points) + "\n")
+                    + "".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in points))
+
+
+def line_of(places):
+    """A point and the direction of the line on which places lie: between the two that are farthest apart. None if
+    they are not on a line: their distances from it are above 1/100 of its length (root mean square)."""
+    first, last = max(itertools.combinations(places, 2), key=lambda pair: math.dist(*pair))
+    length = math.dist(first, last)
+    along = tuple((b - a) / length for a, b in zip(first, last))
+    off = sum(math.dist(place, first)**2 - sum(a * (p - f) for a, p, f in zip(along, place, first))**2
+              for place in places) / len(places)
+    return None if off > (length / 100)**2 else (first, along)
+
+
+def turn_about(along, aligned, truth):
+    """The mean angle [rad] by which the photographs of an aligned model are turned about a direction."""
+    angles, true_poses = [], images_of(truth)
+    for name, pose in images_of(aligned).items():
+        # The product of the inverse of the aligned rotation and the true one, as quaternions.
+        w, x, y, z = map(float, pose[:4])
+        a, b, c, d = map(float, true_poses[name][:4])
+        real = w * a + x * b + y * c + z * d
+        vector = (w * b - x * a - y * d + z * c, w * c + x * d - y * a - z * b, w * d - x * c + y * b - z * a)
+        angles.append(2 * math.atan2(sum(u * v for u, v in zip(along, vector)), real))
+    return sum(math.remainder(angle, 2 * math.pi) for angle in angles) / len(angles)
+
+
+def turned(point, origin, along, angle):
+    """A point after a turn about a line (Rodrigues' formula)."""
+    v = [p - o for p, o in zip(point, origin)]
+    cross = (along[1] * v[2] - along[2] * v[1], along[2] * v[0] - along[0] * v[2], along[0] * v[1] - along[1] * v[0])
+    dot = sum(a * b for a, b in zip(along, v)) * (1 - math.cos(angle))
+    return tuple(o + a * math.cos(angle) + c * math.sin(angle) + u * dot
+                 for o, a, c, u in zip(origin, v, cross, along))
+
+
+def place(model, data, out):
+    """Writes the points of a model, placed by the true camera centres. Returns their file and the scale of the
+    model."""
+    aligned, log = out / "aligned", out / "align.log"
+    measured(log, *PROGRAMS.align(model, data / "sparse", aligned))
+    points = points_of(aligned)
+    if line := line_of(list(centres(data / "sparse").values())):
+        angle = turn_about(line[1], aligned, data / "sparse")
+        points = [turned(point, *line, -angle) for point in points]
+    write_points(points, out / "points.ply")
+    return out / "points.ply", 1 / float(re.search(r"scale ([\d.eE+-]+)", log.read_text())[1])
 
 
 def measure(outcome, data, out):
     """Adds the errors of the result in the folder `out`."""
-    model, points, file = out / "refined" / "sparse", out / "points.ply", out / "errors.json"
+    model, file = out / "refined" / "sparse", out / "errors.json"
     outcome.report = json.loads((out / "refined" / "report.json").read_text())
     outcome.registered = sum(image["observations"] > 0 for image in outcome.report["images"])
     if outcome.registered < 3:
         return
-    write_points(model, points)
+    points, outcome.scale = place(model, data, out)
     measured(out / "errors.log", *PROGRAMS.evaluate(
-        points, data / "mesh.ply", "--align", "centres", "--estimated", model, "--cameras", data / "sparse",
-        "--housing", data / "housing.json", "--framed-only", "--json", file))
-    result = json.loads(file.read_text())
-    outcome.median = 1e3 * result["accuracy"]["median"]
-    outcome.scale = 1 / float(re.search(r": scale ([\d.eE+-]+)", (out / "errors.log").read_text())[1])
+        points, data / "mesh.ply", "--cameras", data / "sparse", "--housing", data / "housing.json", "--framed-only",
+        "--json", file))
+    outcome.median = 1e3 * json.loads(file.read_text())["accuracy"]["median"]

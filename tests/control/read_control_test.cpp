@@ -259,6 +259,20 @@ TEST_F(ReadControl, SameLineTwiceIsOnePoint) {
   EXPECT_EQ(read("bars.csv", "1,2,0.5,0.01\n2,1,0.5,0.01\n").bars.size(), 1u);
 }
 
+TEST_F(ReadControl, HeadersOfBarsStateMetres) {
+  for (const char* header : {"a,b,length", "a,b,Length (m)", "a,b,distance_m,accuracy"})
+    EXPECT_EQ(read("bars.csv", std::string(header) + "\n1,2,0.5\n").bars.size(), 1u) << header;
+}
+
+TEST_F(ReadControl, ACheckOfOneFileStaysACheck) {
+  for (const bool first : {true, false}) {
+    Control control = read("a.csv", first ? "1,2,0.5,0.01,check\n" : "1,2,0.5,0.01\n");
+    append(control, read("b.csv", first ? "1,2,0.5,0.01\n" : "1,2,0.5,0.01,check\n"));
+    ASSERT_EQ(control.bars.size(), 1u);
+    EXPECT_TRUE(control.bars[0].check);
+  }
+}
+
 TEST_F(ReadControl, SeveralFilesAreOneControl) {
   Control control = read("a.csv", "label,x,y,z\n1,500000,2500000,-3\n", {.epsg = 32617});
   append(control, read("bars.txt", "1,2,0.5\n"));

@@ -26,6 +26,7 @@ TargetPlaces some_places() {
 TEST_F(TargetPlacesFiles, AreReadAsWritten) {
   TargetPlaces places = some_places();
   places.covariance(5, 5) = kNotKnown;
+  places.crs = "EPSG:32617";
   write_target_places(folder_ / "places.json", places);
   const TargetPlaces read = read_target_places(folder_ / "places.json");
   ASSERT_EQ(read.targets.size(), 2u);
@@ -35,6 +36,7 @@ TEST_F(TargetPlacesFiles, AreReadAsWritten) {
     EXPECT_EQ(read.targets[i].photographs, places.targets[i].photographs);
   }
   EXPECT_EQ(read.covariance, places.covariance);
+  EXPECT_EQ(read.crs, "EPSG:32617");
   write_target_places(folder_ / "none.json", {});
   EXPECT_TRUE(read_target_places(folder_ / "none.json").targets.empty());
 }

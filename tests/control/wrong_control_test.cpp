@@ -37,6 +37,8 @@ const std::vector<Wrong> kWrong{
     {"a.csv", "label,x,y,z\n1,5,3,4\n", "", "EPSG:99", {.epsg = 99}},
     {"a.csv", "1,2,x\n", ":1", "TARGET,TARGET,LENGTH"},
     {"a.csv", "1,2,0.5\n3,4\n", ":2", "TARGET,TARGET,LENGTH"},
+    {"a.csv", "a,b,length (mm)\n1,2,500\n", ":1", "'length (mm)' must be in metres"},
+    {"a.csv", "a,b,Length_ft\n1,2,5\n", ":1", "'Length_ft' must be in metres"},
     {"a.csv", "1,2,0\n", ":1: target 1-target 2", "above 0"},
     {"a.csv", "1,2,nan\n", ":1: target 1-target 2", "above 0"},
     {"a.csv", "1,2,0.5,-1\n", ":1: target 1-target 2", "above 0"},

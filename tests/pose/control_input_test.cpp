@@ -100,6 +100,47 @@ TEST_F(ControlInput, NamesWhatCannotBeUsed) {
   EXPECT_THAT(refine_.adjust.distances, IsEmpty());
 }
 
+TEST_F(ControlInput, ANumberIsNoNameOfAPhotograph) {
+  for (std::size_t image = 4; image < 8; ++image) see("target 1", image, kFirst);
+  bundle_.images[2].name = "17.jpg";
+  files_.points.push_back({"17", {1, 2, 3}, {0.1, 0.1, 0.1}, false, "c.csv:1"});
+  EXPECT_THAT(add().unused, ElementsAre(HasSubstr("no photograph with a pose shows 17")));
+  EXPECT_THAT(refine_.adjust.places, IsEmpty());
+}
+
+TEST_F(ControlInput, ReportsPointsInTheWorld) {
+  for (std::size_t image = 2; image < 8; ++image) see("target 1", image, kFirst);
+  files_.points.push_back({"target 1", kFirst, {0.01, 0.01, 0.01}, false, "c.csv:1"});
+  add();
+  correct_targets(bundle_, refine_.targets);
+  adjust(bundle_, refine_.adjust);
+  const LocalFrame frame{{500000, 2500000, -20}};
+  const auto json = control_json(apps::control_results(bundle_, refine_.adjust, frame, {}, {}));
+  const auto& x = json["points"][0]["x_m"];
+  EXPECT_NEAR(x["stated"].get<double>(), 500000 + kFirst.x(), 1e-9);
+  EXPECT_NEAR(x["found"].get<double>(), 500000 + kFirst.x(), 0.01);
+}
+
+// A bar gives no position: nothing tells where the model is.
+TEST_F(ControlInput, ChecksThatNothingDeterminesAreNotCompared) {
+  for (std::size_t image = 2; image < 8; ++image) {
+    see("target 1", image, kFirst);
+    see("target 2", image, kSecond);
+  }
+  files_.bars.push_back(
+      {"target 1", "target 2", (kFirst - kSecond).norm(), 0.001, false, "bars.csv:1"});
+  files_.points.push_back(
+      {"target 2", kSecond + Eigen::Vector3d(5, 0, 0), {0.01, 0.01, 0.01}, true, "c.csv:1"});
+  AddedControl added = add();
+  correct_targets(bundle_, refine_.targets);
+  adjust(bundle_, refine_.adjust);
+  const apps::ControlResults results =
+      apps::control_results(bundle_, refine_.adjust, {}, added.checks, {});
+  EXPECT_THAT(apps::control_warnings(results), IsEmpty());
+  EXPECT_TRUE(control_json(results)["points"][0]["x_m"]["residual"].is_null());
+  EXPECT_THAT(apps::control_lines(results).back(), HasSubstr("not determined"));
+}
+
 TEST_F(ControlInput, ReportsBarsAndPlaces) {
   for (std::size_t image = 2; image < 8; ++image) {
     see("target 1", image, kFirst);
@@ -112,7 +153,7 @@ TEST_F(ControlInput, ReportsBarsAndPlaces) {
   correct_targets(bundle_, refine_.targets);
   adjust(bundle_, refine_.adjust);
   const apps::ControlResults results =
-      apps::control_results(bundle_, refine_.adjust, added.checks, {"a line"});
+      apps::control_results(bundle_, refine_.adjust, {}, added.checks, {"a line"});
   EXPECT_EQ(results.targets, 2);
   EXPECT_EQ(results.observations, 12);
   const auto json = control_json(results);
@@ -143,6 +184,9 @@ TEST(ControlOptionsTest, NeedTargets) {
   options.bars = "bars.csv";
   EXPECT_THAT(test::error_of([&] { apps::check(options); }),
               HasSubstr("--bars bars.csv: is for targets"));
+  options = {};
+  options.epsg = 32617;
+  EXPECT_THAT(test::error_of([&] { apps::check(options); }), HasSubstr("--epsg 32617: is for"));
 }
 
 }  // namespace

@@ -16,7 +16,11 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-const Eigen::Vector3d kOrigin(500000, 2500000, -20);
+// From the frame of the survey, in which the cameras look along z, to UTM coordinates, in which
+// they look down.
+Eigen::Vector3d in_world(const Eigen::Vector3d& place) {
+  return {500000 + place.x(), 2500000 - place.y(), -20 - place.z()};
+}
 
 // Six plates on the ground at 0.8 m. Their places are those of points in the frame of the survey.
 class ControlProgram : public RefinePoses {
@@ -58,7 +62,7 @@ class ControlProgram : public RefinePoses {
   void write_points(std::optional<std::size_t> moved = {}) const {
     json points = json::array();
     for (std::size_t plate = 0; plate < places_.size(); ++plate) {
-      Eigen::Vector3d place = places_[plate] + kOrigin;
+      Eigen::Vector3d place = in_world(places_[plate]);
       if (plate == moved) place.x() += 0.05;
       points.push_back({{"label", label(plate)},
                         {"x", place.x()},
@@ -101,15 +105,41 @@ TEST_F(ControlProgram, ControlPointsPlaceTheModel) {
       EXPECT_NEAR(point[axis]["residual"].get<double>(), 0, 1e-3);
   const Bundle found = found_poses(io::read_colmap_model(folder_ / "out" / "sparse"));
   for (std::size_t i = 0; i < found.images.size(); ++i)
-    EXPECT_LT((found.images[i].pose.centre - truth_.images[i].pose.centre - kOrigin).norm(), 3e-3);
+    EXPECT_LT((found.images[i].pose.centre - in_world(truth_.images[i].pose.centre)).norm(), 3e-3);
   const json places = json::parse(read_file(folder_ / "out" / "target_places.json"));
   ASSERT_THAT(places["targets"], SizeIs(places_.size()));
   EXPECT_THAT(places["covariance_m2"], SizeIs(3 * places_.size()));
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const json& one = places["targets"][i];
     EXPECT_EQ(one["label"], label(i));
-    EXPECT_NEAR(one["x"].get<double>(), (places_[i] + kOrigin).x(), 1e-3);
+    EXPECT_NEAR(one["x"].get<double>(), in_world(places_[i]).x(), 1e-3);
   }
+}
+
+// The result of a run is in UTM coordinates. With its poses, all points are checks.
+TEST_F(ControlProgram, KnownPosesKeepTheirFrame) {
+  write_points();
+  refined("--control control.json");
+  const std::string known =
+      "-i out/sparse --lens lens/cameras.txt --housing out/housing.json --poses known -o known ";
+  succeed(known + "--targets targets.json --control control.json");
+  const json report = json::parse(read_file(folder_ / "known" / "report.json"));
+  ASSERT_THAT(report["control"]["points"], SizeIs(places_.size()));
+  for (const json& point : report["control"]["points"])
+    EXPECT_NEAR(point["x_m"]["residual"].get<double>(), 0, 5e-3);
+  const auto centres = [&](const char* folder) {
+    return found_poses(io::read_colmap_model(folder_ / folder / "sparse")).images;
+  };
+  for (std::size_t i = 0; i < truth_.images.size(); ++i)
+    EXPECT_LT((centres("out")[i].pose.centre - centres("known")[i].pose.centre).norm(), 1e-6);
+}
+
+TEST_F(ControlProgram, PlacesOfAnotherRunGo) {
+  write_bars(1);
+  refined("--bars bars.csv");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "target_places.json"));
+  succeed(kInput + "-o out --scale-from " + baseline());
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "target_places.json"));
 }
 
 TEST_F(ControlProgram, APlateThatMovedIsNamed) {

@@ -32,6 +32,9 @@ using testing::survey;
 using testing::target_named;
 
 constexpr double kBar = 0.5;  // [m]
+// From the frame of the plates, in which the cameras look along z, to a world in which they look
+// down.
+const Eigen::DiagonalMatrix<double, 3> kDown(1, -1, -1);
 
 // Plates at both ends of three bars, and single plates at four corners. The survey is 2 m from the
 // ground.
@@ -67,7 +70,7 @@ KnownDistance bar(const std::vector<Target>& targets, int first, double metres, 
 KnownPlace place(const std::vector<Target>& targets, const Plate& plate,
                  const Eigen::Vector3d& error, double sigma) {
   return {KnownDistance::Between::points, target_named(targets, plate.label).source,
-          plate.centre + error, Eigen::Vector3d::Constant(sigma), plate.label};
+          kDown * plate.centre + error, Eigen::Vector3d::Constant(sigma), plate.label};
 }
 
 // A survey with targets as RefinePoses gets it: poses of a pinhole engine at a wrong scale.
@@ -201,6 +204,24 @@ TEST(Bars, AreNamedIfOneIsInFeet) {
   EXPECT_THAT(report.wrong_control[0], HasSubstr("feet"));
 }
 
+// Two bars contradict each other, and a moved plate is found all the same.
+TEST(Bars, ThatContradictEachOtherDoNotHideOtherErrors) {
+  Dive dive;
+  const std::vector<Target>& targets = dive.options.targets;
+  for (std::size_t plate = 0; plate < 10; ++plate) {
+    KnownPlace known = place(targets, dive.plates[plate], Eigen::Vector3d::Zero(), 0.005);
+    known.sigma.head(2).setConstant(std::numeric_limits<double>::infinity());
+    if (plate == 7) known.metres.z() += 0.3;
+    dive.options.adjust.places.push_back(known);
+  }
+  dive.options.adjust.distances.push_back(bar(targets, 1, kBar, 2e-4));
+  dive.options.adjust.distances.push_back(bar(targets, 5, kBar + 0.01, 2e-4));
+  const RefineReport report = dive.refine();
+  ASSERT_THAT(report.wrong_control, SizeIs(2));
+  EXPECT_THAT(report.wrong_control[0], HasSubstr("target 8"));
+  EXPECT_THAT(report.wrong_control[1], HasSubstr("contradict"));
+}
+
 TEST(Bars, ThatContradictEachOtherAreBothNamed) {
   Dive dive;
   const std::vector<Target>& targets = dive.options.targets;
@@ -279,6 +300,80 @@ TEST(Places, AreNamedIfLabelsAreExchanged) {
   const RefineReport report = dive.refine();
   ASSERT_THAT(report.wrong_control, SizeIs(2));
   for (const std::string& line : report.wrong_control) EXPECT_THAT(line, HasSubstr("exchanged"));
+}
+
+// Two points in the plane leave the turn about their line open: the cameras must look down all the
+// same, for any order and error of the coordinates.
+TEST(Places, InThePlaneDoNotTurnTheModelOver) {
+  for (unsigned draw = 1; draw <= 8; ++draw) {
+    std::mt19937_64 random(draw);
+    std::uniform_real_distribution<double> place(-1, 1);
+    Dive dive;
+    for (const std::size_t plate : {6, 7, 8}) {
+      if (plate == 8 && draw <= 4) continue;
+      const double x = place(random), y = place(random);
+      dive.options.adjust.places.push_back(
+          pose::place(dive.options.targets, dive.plates[plate], Eigen::Vector3d(x, y, 0), 0.01));
+      dive.options.adjust.places.back().sigma.z() = std::numeric_limits<double>::infinity();
+    }
+    place_by_control(dive.bundle, dive.options.adjust);
+    for (const BundleImage& image : dive.bundle.images)
+      EXPECT_LT(image.pose.rotation(2, 2), -0.7) << draw;
+    if (draw > 4) continue;
+    // Two places are met, except for their middle where the length is that of a bar.
+    for (const KnownPlace& known : dive.options.adjust.places) {
+      const Eigen::Vector3d found = place_in(dive.bundle, known.of, known.index);
+      EXPECT_LT((found - known.metres).head<2>().norm(), 1e-9);
+    }
+  }
+}
+
+TEST(Places, OfCamerasPlaceAModelWithoutTargets) {
+  Dive dive;
+  dive.options.targets.clear();
+  dive.bundle = absorbed(dive.truth, 0.37);
+  const Eigen::Vector3d shift(100, 200, -20);
+  for (const std::size_t image : {0, 5, 10, 15})
+    dive.options.adjust.places.push_back({KnownDistance::Between::images, image,
+                                          dive.truth.images[image].pose.centre + shift,
+                                          Eigen::Vector3d::Constant(0.002), "camera"});
+  dive.refine();
+  for (std::size_t i = 0; i < dive.truth.images.size(); ++i)
+    EXPECT_LT((dive.bundle.images[i].pose.centre - dive.truth.images[i].pose.centre - shift).norm(),
+              0.01);
+}
+
+TEST(Places, WithNorthingBeforeEastingAreNamed) {
+  Dive dive;
+  for (const Plate& plate : dive.plates) {
+    KnownPlace known = place(dive.options.targets, plate, Eigen::Vector3d::Zero(), 0.005);
+    std::swap(known.metres.x(), known.metres.y());
+    dive.options.adjust.places.push_back(known);
+  }
+  const RefineReport report = dive.refine();
+  ASSERT_FALSE(report.wrong_control.empty());
+  EXPECT_THAT(report.wrong_control.back(), HasSubstr("northing"));
+}
+
+TEST(Heights, AloneGiveNoLength) {
+  AdjustOptions options;
+  KnownPlace height;
+  height.sigma.z() = 0.01;
+  options.places.assign(3, height);
+  EXPECT_FALSE(options.know_lengths());
+  for (KnownPlace& place : options.places) place.sigma.head(2).setConstant(0.01);
+  EXPECT_TRUE(options.know_lengths());
+}
+
+TEST(Bars, WhoseEndsCoincideAtTheStartDoNotScale) {
+  Dive dive;
+  const std::vector<Target>& targets = dive.options.targets;
+  for (const int first : {1, 3})
+    dive.options.adjust.distances.push_back(bar(targets, first, kBar, 2e-4));
+  dive.options.adjust.distances.push_back(bar(targets, 5, kBar, 2e-4));
+  dive.options.adjust.distances.back().second = dive.options.adjust.distances.back().first;
+  EXPECT_NO_THROW(bring_to_metres(dive.bundle, dive.options.adjust));
+  EXPECT_NEAR(testing::pose_errors(dive.bundle, dive.truth).scale, 1, 0.1);
 }
 
 // Heights determine up and down, and no more. The world of the plates is turned, so that up is not

@@ -41,6 +41,13 @@ def check(given):
         require(given.programs, ["FindTargets"])
 
 
+def require_found(file, images):
+    """Failure if FindTargets found no target."""
+    if not files.read_object(file).get("targets"):
+        raise Failure(f"--targets {FIND}: no photograph of {images} shows a target of the families that are looked for "
+                      "(--find-targets=--families)")
+
+
 def files_of(given, out):
     """The files that RefinePoses reads."""
     found = out / FOUND if finds(given) else given.targets

@@ -134,7 +134,7 @@ def colmap_steps(given, out):
 def targets_step(run):
     file = run.out / control.FOUND
     return run.step("targets", run.programs.find_targets(run.given.images, file, *run.own("targets")), file,
-                    reads=[run.given.images])
+                    reads=[run.given.images], after=lambda: control.require_found(file, run.given.images))
 
 
 def refine_step(run):
@@ -259,9 +259,9 @@ def steps(given, out):
     run, wanted = Run(given, out), wanted_steps(given)
     if given.videos:
         yield video.step(given, out)
-    yield from colmap_steps(given, out)
     if control.finds(given):
         yield targets_step(run)
+    yield from colmap_steps(given, out)
     yield refine_step(run)
     if "densify" not in wanted:
         return

@@ -157,13 +157,16 @@ bool names_degrees(const std::string& words) {
   });
 }
 
+bool is_metre(std::string_view word) {
+  return has({"m", "metre", "metres", "meter", "meters"}, word);
+}
+
 bool means_metres(const ColumnName& name) {
-  return has({"m", "metre", "metres", "meter", "meters"}, name.unit);
+  return is_metre(name.unit);
 }
 
 bool is_known_unit(const std::string& unit) {
-  return has({"", "m", "metre", "metres", "meter", "meters", "°", "decimal degrees"}, unit) ||
-         unit.starts_with("deg");
+  return is_metre(unit) || has({"", "°", "decimal degrees"}, unit) || unit.starts_with("deg");
 }
 
 }  // namespace axial::io

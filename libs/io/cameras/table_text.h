@@ -43,6 +43,8 @@ Column column_of(const std::string& words);
 bool means_degrees(const ColumnName& name);
 // Whether a name contains a longitude or latitude: "x/longitude", too.
 bool names_degrees(const std::string& words);
+// Whether a word, in small letters, is the name of the metre.
+bool is_metre(std::string_view word);
 // Whether a column states that its unit is the metre.
 bool means_metres(const ColumnName& name);
 // Whether the unit is empty, the metre or the degree.
