@@ -3,12 +3,13 @@
 thousands of photographs are read in seconds."""
 
 import dataclasses
+import datetime
 import struct
 
 # What stands before the Exif data in a JPEG file and in a PNG file, near the beginning of the file.
 MARKS = (b"Exif\0\0", b"eXIf")
 SEARCHED = 1 << 17  # bytes
-MAKER, MODEL, ORIENTATION, EXIF_TABLE, FOCAL_LENGTH, GPS_TABLE = 271, 272, 274, 0x8769, 0x920A, 0x8825  # tags
+MAKER, MODEL, ORIENTATION, EXIF_TABLE, TAKEN, FOCAL_LENGTH, GPS_TABLE = 271, 272, 274, 0x8769, 0x9003, 0x920A, 0x8825
 POSITION = {2, 4, 6}  # tags of latitude, longitude and altitude in the GPS table
 TEXT, SHORT, RATIONAL = 2, 3, 5  # kinds of values
 BYTES = {1: 1, TEXT: 1, SHORT: 2, 4: 4, RATIONAL: 8, 6: 1, 7: 1, 8: 2, 9: 4, 10: 8, 11: 4, 12: 8}  # by kind
@@ -21,6 +22,7 @@ class Exif:
     camera: str = ""            # maker and model
     focal: float | None = None  # focal length [mm]
     orientation: int = 1        # 1: to be shown as stored; 3, 6, 8: turned; others: mirrored, too
+    date: str = ""              # the day on which it was taken, as 2024-05-31
     has_position: bool = False  # whether latitude, longitude and altitude are there; COLMAP 3.8 uses only all three
 
 
@@ -81,6 +83,14 @@ def camera_of(maker, model):
     return model if repeats else f"{maker} {model}".strip()
 
 
+def day_of(taken):
+    """The day of a time such as 2024:05:31 10:20:30, or nothing. A clock that was never set states zeros."""
+    try:
+        return datetime.date.fromisoformat(taken[:10].replace(":", "-")).isoformat()
+    except (TypeError, ValueError):
+        return ""
+
+
 def has_position(first):
     try:
         return GPS_TABLE in first and POSITION <= first.table(GPS_TABLE).entries.keys()
@@ -94,10 +104,12 @@ def exif_in(data):
         first = first_table(data)
         if first is None:
             return Exif()
-        focal = first.table(EXIF_TABLE).value(FOCAL_LENGTH) if EXIF_TABLE in first else None
+        own = first.table(EXIF_TABLE) if EXIF_TABLE in first else None
+        focal = own.value(FOCAL_LENGTH) if own else None
         orientation = first.value(ORIENTATION)
         return Exif(camera_of(first.value(MAKER), first.value(MODEL)),
                     focal if isinstance(focal, (int, float)) and focal > 0 else None,
-                    orientation if orientation in range(1, 9) else 1, has_position(first))
+                    orientation if orientation in range(1, 9) else 1, day_of(own.value(TAKEN) if own else None),
+                    has_position(first))
     except (ValueError, struct.error):
         return Exif()

@@ -12,13 +12,14 @@ that shows the results. The command of every step is printed and can be typed by
 started again with the same options continues with the step that was killed; with other options, it continues
 with the first step that differs. A second run in the same folder is refused until the first run ends. With
 --cluster, a workflow of Snakemake runs the same commands, and several nodes of a cluster compute the depth
-maps (docs/cluster.md).
+maps (docs/cluster.md). With --dates, the poses of photographs of several dates are computed together, and the
+steps after the poses run for each date.
 """
 
 import fcntl
 import pathlib
 
-from . import cluster, control, files, ownership, poses, still_features, video
+from . import cluster, control, dates, files, ownership, poses, still_features, video
 from .failure import Failure, run_main
 from .reconstruct_options import check_options, check_photographs, options, wanted_steps
 from .reconstruct_steps import best_mesh, steps
@@ -108,6 +109,8 @@ def only_run_in(out):
 
 def results_of(given, out):
     """The line that names the results."""
+    if given.dates and not given.date:
+        return f"Poses: {out / 'refined'}   Dates: {out / dates.FOLDER}   Report: {out / 'report.md'}"
     wanted = wanted_steps(given)
     textured = f"scene_textured.tile*-{given.tiles}.glb" if given.tiles > 1 else "scene_textured.glb"
     found = [("Cloud", out / "scene_dense.ply") if "densify" in wanted else ("Poses", out / "refined")]
@@ -132,6 +135,33 @@ def make_frames(given, out):
         run_all([step], out, ORDER)
 
 
+def run_dates(given, out):
+    """The runs of all dates, after the poses. Returns the lines of the report about them."""
+    found = dates.split(out, given.dated)
+    for one in dates.runs_of(given, out, found, best_mesh):
+        print(f"--- {one.date}", flush=True)
+        run_steps(one, pathlib.Path(one.output))
+        print(results_of(one, pathlib.Path(one.output)), flush=True)
+    return dates.lines_of(found, out)
+
+
+def run_steps(given, out):
+    """Runs the steps of one folder, and writes its report."""
+    todo = list(steps(given, out))
+    ownership.check(out, [step.name for step in todo], bool(given.cluster))
+    out.mkdir(parents=True, exist_ok=True)
+    with only_run_in(out) as lock:
+        seconds = (cluster.run_all(todo, given, out, lock) if given.cluster
+                   else run_all(todo, out, ORDER))
+        text = report(out, seconds, given.lines if not given.date else [f"date: {given.date}"])
+        if given.dates and not given.date:
+            text += "\n".join(run_dates(given, out)) + "\n"
+        files.write(out / "report.md", text)
+    left_over = ownership.left_over(out, [step.name for step in todo])
+    if left_over:
+        print(f"Of an earlier run, not of this one: {files.few(left_over, ownership.MOST_NAMED)}")
+
+
 def say_found(found):
     print(*(f"{word:12} {text}" for word, text in found), "No fault was found.", sep="\n")
 
@@ -147,21 +177,15 @@ def reconstruct(given):
     for line in video.lines_about(out) if given.videos else ():
         print(line, flush=True)
     found = check_photographs(given, lens_lines)
-    todo = list(steps(given, out))
-    ownership.check(out, [step.name for step in todo], bool(given.cluster))
+    if given.dates:
+        dates.claim(out)
     if given.check:
+        ownership.check(out, [step.name for step in steps(given, out)], bool(given.cluster))
         say_found(found)
         return
-    out.mkdir(parents=True, exist_ok=True)
-    with only_run_in(out) as lock:
-        seconds = (cluster.run_all(todo, given, out, lock) if given.cluster
-                   else run_all(todo, out, ORDER))
-        files.write(out / "report.md", report(out, seconds, given.lines))
+    run_steps(given, out)
     for line in still_features.lines_about(out):
         print(f"warning: {line}")
-    left_over = ownership.left_over(out, [step.name for step in todo])
-    if left_over:
-        print(f"Of an earlier run, not of this one: {files.few(left_over, ownership.MOST_NAMED)}")
     print(results_of(given, out))
 
 

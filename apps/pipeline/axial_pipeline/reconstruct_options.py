@@ -7,7 +7,7 @@ import itertools
 import os
 import pathlib
 
-from . import (cameras, cluster, colmap, control, doubles, estimates, files, first_checks, first_look, lenses,
+from . import (cameras, cluster, colmap, control, dates, doubles, estimates, files, first_checks, first_look, lenses,
                masks, matching, photographs, poses, positions, video)
 from .failure import Failure
 from .option_files import find_option, has_option
@@ -42,6 +42,7 @@ def options(script_folder, description, words=None):
     parser.add_argument("--scale-from", default="",
                         help="known lengths or positions [m], as for RefinePoses")
     control.add_options(parser)
+    dates.add_options(parser)
     masks.add_options(parser)
     parser.add_argument("--refine", default="",
                         help="values of lens and port to estimate, as for RefinePoses (default: auto)")
@@ -235,6 +236,7 @@ def check_paths(given):
             setattr(given, name, files.existing(f"--{name}", path))
     masks.check(given)
     control.check(given)
+    dates.check(given)
     file = positions.file_of(given.scale_from)
     if file is not None:
         given.scale_from = positions.PREFIX + files.existing("--scale-from", given.scale_from, file, is_file=True)
@@ -280,6 +282,10 @@ def check_photographs(given, lens_lines):
     for line in given.lines:
         print(f"{given.images}: {line}", flush=True)
     given.lines += video.lines_about(pathlib.Path(given.output)) if given.videos else []
+    given.dated = dates.assign(given, images, used(given, images))
+    if given.dated:
+        given.lines.append(f"dates: {dates.in_words(given.dated)}")
+        print(f"{given.images}: {given.lines[-1]}", flush=True)
     given.doubled = doubled(given, images)
     given.matcher = matching.chosen(given.matcher, len(used(given, images)))
     first_checks.check_options_of_programs(given, {"matches": OPTIONS["matches"]})

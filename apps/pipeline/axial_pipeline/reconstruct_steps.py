@@ -32,7 +32,8 @@ class Run:
     def __init__(self, given, out):
         self.given, self.out, self.programs = given, out, Programs(given.programs)
         self.scene, self.refined = out / "scene_dense.mvs", out / "refined"
-        self.masks = out / masks.FOLDER if given.masks else None  # COLMAP's masks
+        # COLMAP's masks
+        self.masks = pathlib.Path(given.joint or out) / masks.FOLDER if given.masks else None
         self.lens_files = [lenses.given_as(text)[1] for text in given.lenses]
 
     def own(self, name):
@@ -194,8 +195,10 @@ def not_given_again(options, words):
 
 
 def words_about_registration(run, words):
-    """The options of CompareSurveys for the registration, and the files that it then reads: by targets if
-    both surveys have some, otherwise by the ground. `words`: of the user."""
+    """The options of CompareSurveys for the registration, and the files that it then reads: none between dates
+    whose poses are joint; by targets if both surveys have some; otherwise by the ground. `words`: of the user."""
+    if run.given.joint and not has_option(words, "--align"):
+        return [("--align", "none")], []  # the poses of all dates are in one frame
     places = [folder / "refined" / control.PLACES for folder in (pathlib.Path(run.given.earlier).parent, run.out)]
     if not run.given.targets or not places[0].exists() or has_option(words, "--align"):
         return [("--align", "icp")], []
@@ -254,16 +257,23 @@ def survey_steps(run, wanted):
                        before=lambda: write_run_before("page", given, out))
 
 
-def steps(given, out):
-    """The steps of a run with the options `given` in the folder `out`, in order."""
-    run, wanted = Run(given, out), wanted_steps(given)
+def steps_to_poses(run):
+    given, out = run.given, run.out
     if given.videos:
         yield video.step(given, out)
     if control.finds(given):
         yield targets_step(run)
     yield from colmap_steps(given, out)
     yield refine_step(run)
-    if "densify" not in wanted:
+
+
+def steps(given, out):
+    """The steps of a run with the options `given` in the folder `out`, in order. With --dates, they are the steps to
+    the poses of all dates, or those from the poses to the results of one date."""
+    run, wanted = Run(given, out), wanted_steps(given)
+    if not given.date:
+        yield from steps_to_poses(run)
+    if "densify" not in wanted or bool(given.dates) != bool(given.date):
         return
     yield from cloud_steps(run)
     yield from mesh_steps(run, wanted)
