@@ -261,9 +261,9 @@ def steps_to_poses(run):
     given, out = run.given, run.out
     if given.videos:
         yield video.step(given, out)
-    if control.finds(given):
-        yield targets_step(run)
     yield from colmap_steps(given, out)
+    if control.finds(given):  # after COLMAP, which other families of targets must not run again
+        yield targets_step(run)
     yield refine_step(run)
 
 
