@@ -50,6 +50,25 @@ Json warnings_of(const JsonField& field) {
   return warnings;
 }
 
+// Numbers, of which those that are not known are null.
+Json numbers_of(const JsonField& field) {
+  Json numbers = Json::array();
+  for (const JsonField& number : field.elements())
+    numbers.push_back(number.value.is_null() ? Json() : Json(number.number()));
+  return numbers;
+}
+
+Json control_of(const JsonField& field) {
+  Json rows = Json::array();
+  for (const JsonField& row : field.elements())
+    rows.push_back({{"name", row.at("name").text()},
+                    {"use", row.at("use").text()},
+                    {"photographs", row.at("photographs").number_from_0()},
+                    {"residual_mm", numbers_of(row.at("residual_mm"))},
+                    {"expected_sigma_mm", numbers_of(row.at("expected_sigma_mm"))}});
+  return rows;
+}
+
 }  // namespace
 
 Json run_report(const std::filesystem::path& file) {
@@ -63,6 +82,7 @@ Json run_report(const std::filesystem::path& file) {
                                {"version", version.value.is_null() ? Json() : Json(version.text())},
                                {"warnings", warnings_of(step.at("warnings"))}});
   }
+  if (whole.value.contains("control")) report["control"] = control_of(whole.at("control"));
   return report;
 }
 

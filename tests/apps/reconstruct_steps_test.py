@@ -8,10 +8,12 @@ import shlex
 import shutil
 import signal
 
-from pipeline_folder import reconstruct_command
+from pipeline_folder import options_of, reconstruct_command
 from programs import main, without_streams
 from reconstruct_test import STEPS
 from stand_ins import StandIns
+
+from axial_pipeline.run_file import write_run
 
 
 class WithStandIns(StandIns):
@@ -104,6 +106,26 @@ class WithStandIns(StandIns):
         self.assertEqual(self.done_before(*again), 13)
         self.assertEqual(self.done_before(*again, "--page=--map other"), 11)
         self.assertEqual("\n".join(self.commands()).count("--map "), 2)
+
+    def test_the_page_and_the_report_have_bars_and_control_points(self):
+        number = lambda residual, sigma: {"residual": residual, "expected_sigma": sigma}
+        control = {"targets": 4, "observations": 20, "rms_px": 0.05, "left_out": ["a line"],
+                   "bars": [{"name": "bar 1-2", "use": "check", "photographs": 5, "length_m": number(-0.00025, 0.001)}],
+                   "points": [{"name": "target 7", "use": "used", "photographs": 3, "x_m": number(0.0015, 0.003),
+                               "y_m": None, "z_m": number(None, None)}]}
+        self.write("control.json", json.dumps(control))
+        self.add_to("RefinePoses", 'case "$*" in *" --database "*) (printf %s "$(cat out/refined/report.json | '
+                                   'sed \'s/}$/, "control": /\')"; cat control.json; echo "}") > report.new; '
+                                   "mv report.new out/refined/report.json ;; esac\n")
+        self.succeeds("--targets", self.write("targets.json", "{}"))
+        write_run(self.folder / "run.json", options_of(), [], self.folder / "out")
+        rows = json.loads((self.folder / "run.json").read_text())["control"]
+        self.assertEqual(rows[1], {"name": "target 7", "use": "used", "photographs": 3,
+                                   "residual_mm": [1.5, None, None], "expected_sigma_mm": [3.0, None, None]})
+        report = (self.folder / "out" / "report.md").read_text()
+        for line in ("| bar 1-2 | check | 5 | -0.25 | 1.00 |", "| target 7 | used | 3 | 1.50, -, - | 3.00, -, - |",
+                     "- warning: a line"):
+            self.assertIn(line, report)
 
     def test_other_options_redo_the_steps_after_them(self):
         names = [f"{number}.png" for number in range(3)]

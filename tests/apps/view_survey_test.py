@@ -25,7 +25,11 @@ RUN = {"command": ["reconstruct", "--images=my photographs"], "steps": [
     {"name": "poses", "command": ["colmap", "mapper"], "seconds": 3.25, "version": None, "warnings": []},
     {"name": "densify", "command": ["DensifyPointCloud", "-i", "a scene.mvs"], "seconds": 3724,
      "version": "DensifyPointCloud 1.2.3", "warnings": [
-         {"text": "image 7 has <no> neighbours", "times": 1}, {"text": "low contrast", "times": 4}]}]}
+         {"text": "image 7 has <no> neighbours", "times": 1}, {"text": "low contrast", "times": 4}]}],
+    "control": [{"name": "bar target 1-target 2", "use": "check", "photographs": 5, "residual_mm": [-0.125],
+                 "expected_sigma_mm": [0.25]},
+                {"name": "target 7", "use": "used", "photographs": 3, "residual_mm": [1.5, -2.25, None],
+                 "expected_sigma_mm": [3, 3, None]}]}
 
 
 def height(x):
@@ -165,7 +169,8 @@ class Folder(SurveyCase):
                      ("the content []: must be an object", []), ("steps is missing", {"command": []}),
                      ("steps 7: must be a list", {**RUN, "steps": 7}),
                      ("steps[0].seconds -1: must be at least 0", {**RUN, "steps": [step]}),
-                     ("command[0] 3: must be a text", {**RUN, "command": [3]}))))):
+                     ("command[0] 3: must be a text", {**RUN, "command": [3]}),
+                     ("control[0].use is missing", {**RUN, "control": [{"name": "a"}]}))))):
             self.refuses_contents(self.path("work", name), self.survey(),
                                   *((name + expected, content) for expected, content in cases))
         self.refuses_and_keeps("none.dem.tif: ", *self.view("--map", "none"))
@@ -317,7 +322,8 @@ class Page(SurveyCase):
         text = page.value("document.getElementById('run').textContent")
         for part in ("2 steps in 1 h 2 min", "2 warnings", "poses", "3.3 s", "densify",
                      "DensifyPointCloud -i 'a scene.mvs'", "DensifyPointCloud 1.2.3", "Version not known",
-                     "image 7 has <no> neighbours", "low contrast (4 times)", "'--images=my photographs'"):
+                     "bar target 1-target 2", "target 7", "1.50, -2.25, –", "image 7 has <no> neighbours",
+                     "low contrast (4 times)", "'--images=my photographs'"):
             self.assertIn(part, text)
 
     def test_a_narrow_page_works_with_touch(self):

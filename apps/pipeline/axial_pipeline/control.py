@@ -58,20 +58,25 @@ def lines_of(found):
     """The lines of the report about the object "control" of RefinePoses's report."""
     yield f"- {found['targets']} targets at {found['observations']} places, {found['rms_px']:.3f} px"
     yield from (f"- warning: {line}" for line in found["left_out"])
-    if found["bars"] or found["points"]:
+    rows = rows_of(found)
+    if rows:
         yield from ("", "| bar or control point | use | photographs | found minus stated [mm] | expected sigma [mm] |",
                     "|---|---|---|---|---|")
-    for bar in found["bars"]:
-        yield row_of(bar, [bar["length_m"]])
-    for point in found["points"]:
-        yield row_of(point, [point[axis] for axis in ("x_m", "y_m", "z_m")])
+    for row in rows:
+        columns = [", ".join("-" if one is None else f"{one:.2f}" for one in row[key])
+                   for key in ("residual_mm", "expected_sigma_mm")]
+        yield f"| {row['name']} | {row['use']} | {row['photographs']} | {' | '.join(columns)} |"
 
 
-def row_of(entry, numbers):
-    """A row of the table: an entry of the report, and its numbers, of which those that are not known are None."""
-    columns = [", ".join("-" if one is None or one[key] is None else f"{1e3 * one[key]:.2f}" for one in numbers)
-               for key in ("residual", "expected_sigma")]
-    return f"| {entry['name']} | {entry['use']} | {entry['photographs']} | {' | '.join(columns)} |"
+def rows_of(found):
+    """The rows of the table of bars and control points: name, use, number of photographs, and the numbers in mm, of
+    a bar its length, of a point x, y and z; None: not known or not determined."""
+    entries = [(bar, [bar["length_m"]]) for bar in found["bars"]]
+    entries += [(point, [point[axis] for axis in ("x_m", "y_m", "z_m")]) for point in found["points"]]
+    in_mm = lambda numbers, key: [None if one is None or one[key] is None else 1e3 * one[key] for one in numbers]
+    return [{"name": entry["name"], "use": entry["use"], "photographs": entry["photographs"],
+             "residual_mm": in_mm(numbers, "residual"), "expected_sigma_mm": in_mm(numbers, "expected_sigma")}
+            for entry, numbers in entries]
 
 
 def words(given, out):

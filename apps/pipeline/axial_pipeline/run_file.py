@@ -6,7 +6,7 @@ import collections
 import json
 import re
 
-from . import files, jobs
+from . import control, files, jobs
 from .steps import Records
 
 FOUND = ("lenses", "cameras", "lines", "videos", "date", "joint", "dated", "doubled")  # what the first checks add to the options
@@ -40,5 +40,8 @@ def write_run(path, given, todo, out):
     found["images"] = "" if found["video"] else vars(given).get("images")  # the first checks set it for videos
     options = [f"--{name.replace('_', '-')}={one}" for name, value in found.items()
                if value and name not in FOUND for one in (value if isinstance(value, list) else [value])]
-    steps = [entry_of(step, todo, out) for step in todo]
-    files.write(path, json.dumps({"command": ["reconstruct", *options], "steps": steps}, indent=1))
+    run = {"command": ["reconstruct", *options], "steps": [entry_of(step, todo, out) for step in todo]}
+    refined = files.read_object(out / "refined" / "report.json").get("control")
+    if refined:
+        run["control"] = control.rows_of(refined)
+    files.write(path, json.dumps(run, indent=1))

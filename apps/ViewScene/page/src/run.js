@@ -25,13 +25,30 @@ function rowsOf(step) {
                         ...warnings.length ? [make("ul", { class: "warnings" }, ...warnings)] : []))];
 }
 
+const inMillimetres = numbers => numbers.map(number => number === null ? "–" : number.toFixed(2)).join(", ");
+
+// The table of bars and control points.
+function controlTable(rows) {
+  const cells = (kind, words) => words.map((word, i) => make(kind, i > 1 ? { class: "number" } : {}, word));
+  return [
+    make("h2", {}, "Bars and control points"),
+    make("p", { class: "hint" }, "Found minus stated, and the standard deviation that this difference should have; " +
+      "of points in x, y and z."),
+    make("table", { id: "control" },
+         make("tr", {}, ...cells("th", ["", "use", "photographs", "off [mm]", "expected [mm]"])),
+         ...rows.map(row => make("tr", {}, ...cells("td", [
+           row.name, row.use, String(row.photographs), inMillimetres(row.residual_mm),
+           inMillimetres(row.expected_sigma_mm)]))))];
+}
+
 /** Shows scene.run. */
-export function showRun({ command, steps }) {
+export function showRun({ command, steps, control }) {
   const warnings = steps.reduce((sum, step) => sum + step.warnings.length, 0);
   const seconds = steps.reduce((sum, step) => sum + step.seconds, 0);
   byId("run").replaceChildren(
     make("h2", {}, `${steps.length} steps in ${duration(seconds)}`),
     make("p", { class: "hint" }, `${warnings === 1 ? "1 warning" : `${warnings || "No"} warnings`}. Open a version ` +
       "to see the command."),
-    folded("reconstruct", command), make("table", {}, ...steps.flatMap(rowsOf)));
+    folded("reconstruct", command), ...control?.length ? controlTable(control) : [],
+    make("table", {}, ...steps.flatMap(rowsOf)));
 }
