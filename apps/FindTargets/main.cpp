@@ -12,17 +12,15 @@
 #include "base/atomic_file.h"
 #include "base/context.h"
 #include "base/error.h"
-#include "base/first_error.h"
 #include "base/log.h"
-#include "base/parallel.h"
 #include "base/program.h"
 #include "base/same_file.h"
 #include "io/images/image.h"
 #include "options.h"
 #include "photographs.h"
 #include "pictures.h"
-#include "targets/find_targets.h"
 #include "targets/print.h"
+#include "targets/search.h"
 #include "targets/targets_file.h"
 #include "targets_output.h"
 
@@ -54,38 +52,9 @@ void warn_of_repetitions(const targets::Photograph& photograph) {
                   photograph.name, label, count);
 }
 
-targets::Photograph find(const NamedPhotograph& photograph, const Options& options) {
-  io::Photograph read = io::read_photograph(photograph.file);
-  if (!read.opaque.empty()) read.pixels.setTo(0, read.opaque == 0);
-  return {photograph.name, read.pixels.size(),
-          targets::find_targets(read.pixels, options.families)};
-}
-
-std::uint64_t bytes_of(const NamedPhotograph& photograph) {
-  const io::ImageHeader header = io::read_image_header(photograph.file);
-  return io::bytes_needed(header) + targets::bytes_of_search(header.size);
-}
-
-std::vector<targets::Photograph> find_all(const std::vector<NamedPhotograph>& photographs,
-                                          const Options& options, const Context& context) {
-  std::uint64_t largest = 0;
-  for (const NamedPhotograph& photograph : photographs)
-    largest = std::max(largest, bytes_of(photograph));
-  const std::size_t in_flight = context.memory().items(largest, thread_count(), "a photograph");
-  std::vector<targets::Photograph> found(photographs.size());
-  ProgressCounter done(context.stage("Searched photographs"), photographs.size());
-  FirstError error;
-  for_each_in_flight(photographs.size(), in_flight, [&](std::size_t i) {
-    error.run(i, [&] { found[i] = find(photographs[i], options); });
-    done.add();
-  });
-  error.rethrow();
-  return found;
-}
-
 // The photographs are read again, so that few are in memory at a time.
 void write_all_pictures(const std::filesystem::path& folder,
-                        const std::vector<NamedPhotograph>& photographs,
+                        const std::vector<targets::NamedPhotograph>& photographs,
                         const std::vector<targets::Photograph>& found) {
   write_folder(folder, [&](const std::filesystem::path& staging) {
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -113,8 +82,9 @@ void report(const std::vector<targets::Photograph>& found) {
 }
 
 // Pictures in the folder of the photographs would be searched by the next run.
-void check_outputs(const Options& options, const std::vector<NamedPhotograph>& photographs) {
-  for (const NamedPhotograph& photograph : photographs)
+void check_outputs(const Options& options,
+                   const std::vector<targets::NamedPhotograph>& photographs) {
+  for (const targets::NamedPhotograph& photograph : photographs)
     require_not_an_input(options.output, std::array{photograph.file}, "--output-file");
   for (const std::filesystem::path& input : options.input) {
     const std::string below = options.pictures.lexically_relative(input).string();
@@ -134,10 +104,11 @@ int run(int argc, char** argv) {
     return 0;
   }
   const Context context = program_context(options.parsed);
-  const std::vector<NamedPhotograph> photographs = photographs_of(options.input);
+  const std::vector<targets::NamedPhotograph> photographs = photographs_of(options.input);
   check_outputs(options, photographs);
   control::Control known = read_known(options);
-  const std::vector<targets::Photograph> found = find_all(photographs, options, context);
+  const std::vector<targets::Photograph> found =
+      targets::search_photographs(photographs, options.families, context);
   write_output(options, found, std::move(known));
   if (!options.pictures.empty()) write_all_pictures(options.pictures, photographs, found);
   report(found);

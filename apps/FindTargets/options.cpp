@@ -14,8 +14,6 @@
 namespace axial::apps {
 namespace {
 
-constexpr const char* kFamilies = "circular12,APRILTAG_36h11";
-
 template <class T>
 T number_in(std::string_view word, const char* option, const std::string& text) {
   const auto number = parse_number<T>(word);
@@ -68,7 +66,7 @@ void declare_print(OptionList& list, Options& options) {
 }
 
 void declare(OptionList& list, Options& options) {
-  options.families = targets::parse_families(kFamilies);
+  options.families = targets::parse_families(targets::kUsualFamilies);
   list.add("input-file,i", &options.input,
            "photographs: a folder, with its subfolders, or a file; may be given several times")
       .add("output-file,o", &options.output,
@@ -83,7 +81,7 @@ void declare(OptionList& list, Options& options) {
                         "(0: the system that the file states, or UTM for longitude and latitude)")
       .zero_or(1024, 999'999)
       .add_text_with_default(
-          "families", kFamilies,
+          "families", targets::kUsualFamilies,
           [&](const std::string& text) { options.families = targets::parse_families(text); },
           "targets to find, at most one of each kind: circular12, circular14, circular16 or "
           "circular20; a dictionary of OpenCV's markers (APRILTAG_36h11, 4X4_50, ...); a ChArUco "

@@ -11,15 +11,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void add_folder(const fs::path& folder, std::vector<NamedPhotograph>& photographs) {
+void add_folder(const fs::path& folder, std::vector<targets::NamedPhotograph>& photographs) {
   for (const fs::path& file : io::photographs_in_folder(folder, true))
     photographs.push_back({file, file.lexically_relative(folder).string()});
 }
 
 }  // namespace
 
-std::vector<NamedPhotograph> photographs_of(std::span<const fs::path> input) {
-  std::vector<NamedPhotograph> photographs;
+std::vector<targets::NamedPhotograph> photographs_of(std::span<const fs::path> input) {
+  std::vector<targets::NamedPhotograph> photographs;
   for (const fs::path& path : input) {
     if (!fs::exists(path)) fail_in(path, "does not exist");
     if (fs::is_directory(path))
@@ -27,8 +27,8 @@ std::vector<NamedPhotograph> photographs_of(std::span<const fs::path> input) {
     else
       photographs.push_back({path, path.filename().string()});
   }
-  std::ranges::sort(photographs, {}, &NamedPhotograph::name);
-  const auto same = std::ranges::adjacent_find(photographs, {}, &NamedPhotograph::name);
+  std::ranges::sort(photographs, {}, &targets::NamedPhotograph::name);
+  const auto same = std::ranges::adjacent_find(photographs, {}, &targets::NamedPhotograph::name);
   if (same != photographs.end())
     fail_in((same + 1)->file, "has the same name as {}", same->file.string());
   return photographs;

@@ -3,20 +3,15 @@
 
 #include <filesystem>
 #include <span>
-#include <string>
 #include <vector>
 
-namespace axial::apps {
+#include "targets/search.h"
 
-// A photograph and its name as COLMAP names images.
-struct NamedPhotograph {
-  std::filesystem::path file;
-  std::string name;
-};
+namespace axial::apps {
 
 // Returns the photographs of `input`, in the order of their names. The photographs of a folder are
 // the images in it and in its subfolders; their names are relative to the folder. Throws an Error
 // for a path that does not exist, for a folder without photographs, and for equal names.
-std::vector<NamedPhotograph> photographs_of(std::span<const std::filesystem::path> input);
+std::vector<targets::NamedPhotograph> photographs_of(std::span<const std::filesystem::path> input);
 
 }  // namespace axial::apps

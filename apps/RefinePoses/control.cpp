@@ -177,6 +177,10 @@ void check(const ControlOptions& options) {
   const auto needs_targets = [&](const char* option, const std::string& value) {
     fail("--{} {}: is for targets, and --targets is missing", option, value);
   };
+  if (options.find && options.images.empty())
+    fail("--targets find: needs --images, the folder of the photographs");
+  if (!options.find && !options.images.empty())
+    fail("--images {}: is for --targets find", options.images.string());
   if (options.any()) return;
   if (!options.bars.empty()) needs_targets("bars", options.bars.string());
   if (!options.control.empty()) needs_targets("control", options.control.string());

@@ -9,15 +9,23 @@
 #include "control/control.h"
 #include "pose/refine.h"
 #include "scene/local_frame.h"
+#include "targets/family.h"
 
 namespace axial::apps {
 
+// The file of found targets in the output folder.
+inline constexpr const char* kFoundTargets = "targets.json";
+
 struct ControlOptions {
   std::filesystem::path targets, bars, control;  // files; empty: not given
+  bool find = false;  // targets are found in the photographs below `images`
+  std::filesystem::path images;
+  std::string families = targets::kUsualFamilies;  // of targets that are found, as
+                                                   // targets::parse_families() reads them
   std::string checks;  // labels and bars that are checks, separated by commas
   int epsg = 0;        // of the coordinates; 0: not given
 
-  bool any() const { return !targets.empty(); }
+  bool any() const { return find || !targets.empty(); }
 };
 
 // Throws an Error if options contradict each other.

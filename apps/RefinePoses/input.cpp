@@ -52,6 +52,7 @@ std::vector<fs::path> inputs_of(const Options& options, const fs::path& model) {
 std::vector<fs::path> outputs_of(const Options& options) {
   std::vector<fs::path> outputs{options.output / "housing.json", options.output / "report.json",
                                 options.output / control::kTargetPlaces};
+  if (options.control.find) outputs.push_back(options.output / kFoundTargets);
   for (const char* name : {"cameras", "images", "points3D"}) {
     const fs::path sparse = options.output / "sparse", other = options.output / "colmap-underwater";
     outputs.push_back(sparse / name += ".txt");
@@ -124,7 +125,7 @@ Input read_input(const Options& options) {
   else if (!options.database.empty())
     input.left_out = add_left_out(options.database, input.lenses, input.model);
   input.housing = load_housing(options, input.model, input.lenses);
-  if (options.control.any()) input.control = read_control(options.control);
+  if (options.control.any() && !options.control.find) input.control = read_control(options.control);
   return input;
 }
 

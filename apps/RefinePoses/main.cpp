@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "effective_lens.h"
+#include "found_targets.h"
 #include "stages.h"
 
 namespace axial::apps {
@@ -51,6 +52,7 @@ int run(int argc, char** argv) {
   }
   Input input = read_input(options);
   check_output(options, input);
+  if (options.control.find) find_targets(options, input, context);
   const std::optional<Registered> registered = register_photographs(options, input, context);
   UnusedInput unused(options.allow_missing);
   const Refined refined = refine(options, input, unused, context);

@@ -66,7 +66,7 @@ void declare_files(OptionList& visible, Options& options, std::string& housing) 
 }
 
 // What is estimated, from which observations, and what is known.
-void declare_estimate(OptionList& visible, Options& options) {
+void declare_estimate(OptionList& visible, Options& options, std::string& targets) {
   visible
       .add_with_default("poses", &options.poses,
                         "adjust, or known: the poses are correct and in metres, and are kept; only "
@@ -95,9 +95,12 @@ void declare_estimate(OptionList& visible, Options& options) {
                         "without this option, that of positions is estimated from their distances "
                         "to the cameras, unless their file states it")
       .positive()
-      .add("targets", &options.control.targets,
+      .add("targets", &targets,
            "targets in the photographs: a file of FindTargets, gcp_list.txt of OpenDroneMap, or "
-           "markers of Metashape (XML)")
+           "markers of Metashape (XML); or find: they are found in the photographs of --images")
+      .add("images", &options.control.images, "folder of the photographs, for --targets find")
+      .add_with_default("families", &options.control.families,
+                        "families of targets for --targets find, as for FindTargets")
       .add("bars", &options.control.bars,
            "known distances between targets: lines TARGET,TARGET,METRES,SIGMA, or JSON")
       .add("control", &options.control.control,
@@ -130,7 +133,7 @@ void declare_estimate(OptionList& visible, Options& options) {
 }  // namespace
 
 Options parse_command_line(int argc, const char* const* argv) {
-  std::string housing;
+  std::string housing, targets;
   Options options;
   ProgramOptions program{
       "RefinePoses",
@@ -141,7 +144,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   program.instead_of_input = "effective-lens";
   // In the order of --help.
   declare_files(program.visible, options, housing);
-  declare_estimate(program.visible, options);
+  declare_estimate(program.visible, options, targets);
   declare_rigs(program.visible, options.rigs);
   UnusedInput::declare(program.visible, options.allow_missing);
   options.parsed = parse_options(argc, argv, program);
@@ -150,6 +153,9 @@ Options parse_command_line(int argc, const char* const* argv) {
     options.usual_housing = housing;
   else
     options.housing = in_working_folder(options.parsed.common, housing);
+  options.control.find = targets == "find";
+  if (!targets.empty() && !options.control.find)
+    options.control.targets = in_working_folder(options.parsed.common, targets);
   options.scale_sigma.given = given(options.parsed, "scale-sigma");
   check(options);
   return options;

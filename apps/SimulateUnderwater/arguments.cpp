@@ -43,7 +43,7 @@ void declare_scene(OptionList& visible, Arguments& a) {
       .add_with_default("relief", &a.preset.relief, "factor for the scene's heights")
       .add_switch("changed", &a.preset.changed,
                   "a second survey of the reef: a boulder moved, a patch of 1 m x 1 m grew by 20 "
-                  "mm, and the views and the noise are others; writes change.json")
+                  "mm, and the views and the noise are others; plates stay; writes change.json")
       .add_with_default("samples", &a.samples, "rays along each side of a pixel")
       .range(1, 16)
       .add_with_default("sparse-points", &a.sparse_points,

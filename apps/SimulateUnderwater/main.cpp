@@ -41,13 +41,24 @@ void photograph(const Arguments& a, const simulate::Preset& preset, const simula
   }
 }
 
+// Plates stay where they are: a second survey has the plates of the first.
+PlatesOnGround plates_of(const Arguments& a, const simulate::Preset& preset,
+                         const simulate::TriangleMesh& mesh) {
+  if (!a.preset.changed) return plates_on(mesh, preset, a);
+  simulate::PresetOptions first = a.preset;
+  first.changed = false;
+  simulate::Preset before = simulate::make_preset(first);
+  apply_lens_option(before, a);
+  return plates_on(simulate::terrain_mesh(before.terrain), before, a);
+}
+
 void simulate_scene(const Arguments& a, const simulate::Preset& preset,
                     const std::filesystem::path& folder) {
   make_folder(folder);
   simulate::TriangleMesh mesh = simulate::terrain_mesh(preset.terrain);
   check_submerged(preset, mesh);
   const auto first_plate_face = static_cast<std::uint32_t>(mesh.faces.size());
-  const PlatesOnGround plates = plates_on(mesh, preset, a);
+  const PlatesOnGround plates = plates_of(a, preset, mesh);
   append(mesh, simulate::plate_mesh(plates.plates));
   log_info("{}: {} vertices, {} faces", a.preset.name, mesh.vertices.size(), mesh.faces.size());
   const simulate::RayScene scene(mesh);

@@ -25,6 +25,9 @@ struct Family {
   std::map<std::size_t, std::string> labels{};
 };
 
+// The families of programs that find targets, without --families.
+inline constexpr const char* kUsualFamilies = "circular12,APRILTAG_36h11";
+
 // Reads the name of a family: "circular12", "circular14", "circular16", "circular20", or a
 // dictionary of dictionary_number() (dictionary.h). Throws an Error that contains `text` for
 // another name.

@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
 
 #include "base/atomic_file.h"
 #include "pose/refine_poses.h"
+#include "targets/drawn_plate.h"
 
 namespace axial::pose {
 namespace {
@@ -157,6 +160,52 @@ TEST_F(ControlProgram, TheSameBytesForAnyNumberOfThreads) {
   refined("--bars bars.csv --control control.json --max-threads 2", "two");
   for (const char* file : {"report.json", "target_places.json", "sparse/images.txt"})
     EXPECT_TRUE(read_file(folder_ / "one" / file) == read_file(folder_ / "two" / file)) << file;
+}
+
+// Each photograph shows the plates where targets.json has their centres.
+TEST_F(ControlProgram, FindsTargetsItself) {
+  constexpr int kSide = 48;  // of the picture of a plate [px]
+  std::map<std::string, cv::Mat1b> photographs;
+  for (const BundleImage& image : truth_.images)
+    photographs[image.name] = cv::Mat1b(768, 1024, uchar{90});
+  const json known = json::parse(read_file(folder_ / "targets.json"));
+  std::size_t whole = 0;
+  for (const json& target : known["targets"]) {
+    const Eigen::Vector2d centre(target["x"], target["y"]);
+    const cv::Rect place(static_cast<int>(centre.x()) - kSide / 2,
+                         static_cast<int>(centre.y()) - kSide / 2, kSide, kSide);
+    if ((place & cv::Rect(0, 0, 1024, 768)) != place) continue;
+    test::PlateView view{.size = {kSide, kSide}, .width = 36, .noise = 0};
+    view.centre = centre - Eigen::Vector2d(place.x, place.y);
+    const std::string number = target["label"].get<std::string>().substr(7);
+    test::photograph(view,
+                     targets::Pattern(targets::parse_family("circular12"), std::stoul(number)))
+        .copyTo(photographs[target["image"]](place));
+    ++whole;
+  }
+  std::filesystem::create_directory(folder_ / "photographs");
+  for (const auto& [name, picture] : photographs)
+    cv::imwrite((folder_ / "photographs" / name).string(), picture,
+                {cv::IMWRITE_JPEG_QUALITY, 100});
+  write_bars(1);
+  const std::string options = "--targets find --bars bars.csv --checks \"target 3-target 4\" ";
+  succeed(kInput + "-o out --images photographs --families circular12 " + options);
+  const json found = json::parse(read_file(folder_ / "out" / "targets.json"));
+  EXPECT_EQ(found["targets"].size(), whole);
+  const json report = json::parse(read_file(folder_ / "out" / "report.json"));
+  EXPECT_EQ(report["control"]["targets"], places_.size());
+  EXPECT_NEAR(report["control"]["bars"][1]["length_m"]["residual"].get<double>(), 0, 1e-3);
+
+  const std::string refused = kInput + "-o none -v 0 " + options;
+  expect_refusal("RefinePoses", refused, "--targets find: needs --images");
+  std::filesystem::remove(folder_ / "photographs" / truth_.images[3].name);
+  expect_refusal("RefinePoses", refused + "--images photographs",
+                 "has no photograph " + truth_.images[3].name);
+  cv::imwrite((folder_ / "photographs" / truth_.images[3].name).string(),
+              cv::Mat1b(768, 1024, uchar{90}));
+  expect_refusal("RefinePoses", refused + "--images photographs --families APRILTAG_36h11",
+                 "no photograph of");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "none"));
 }
 
 TEST_F(ControlProgram, WhatCannotBeUsedIsAWarning) {

@@ -145,6 +145,11 @@ TEST_F(SimulateUnderwater, PhotographsASecondSurveyWithOtherNoise) {
               change["came"].get<double>() - change["gone"].get<double>(), 1e-12);
   EXPECT_EQ(change["came"].get<double>(), change["boulder_came"]["volume"].get<double>() +
                                               change["patch_came"]["volume"].get<double>());
+  const auto plates_of = [&](const std::string& name, const std::string& option) {
+    EXPECT_EQ(run(reef + option + "--targets 3 --bars 0.5 -o " + name).exit_code, 0);
+    return io::read_json(folder_ / name / "true_targets.json")["plates"];
+  };
+  EXPECT_EQ(plates_of("e", ""), plates_of("f", "--changed "));
   refuses("only reef has one", "-o d --preset sand --changed");
   refuses("no boulder that can be moved", "-o d --preset reef --seed 46 --changed");
 }

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A strip of photographs that bends, with and without control points at its ends.
+
+    python3 tests/acceptance/control_strip.py [--seeds 83] [--views 60] [--base DIR]
+
+COLMAP runs once. RefinePoses runs with a known length, and with the plates at the ends of the strip as control points
+of 10 mm besides. The heights of the camera centres are compared after the best similarity, in sixths of the strip."""
+
+import argparse
+import json
+import pathlib
+import random
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import dive_runs  # noqa: E402
+from control_draws import SIGMA, control_json, refined  # noqa: E402
+from dive_runs import as_measured, line_of  # noqa: E402
+from points import BASE, point  # noqa: E402
+from support import runs  # noqa: E402
+from support.colmap_text import centres  # noqa: E402
+from support.runs import PROGRAMS, measured  # noqa: E402
+
+FRESH_SEEDS = (83, 84)   # not used while building
+VIEWS, PARTS = 60, 6
+END = 0.12               # the part of the strip that is an end
+SHARE = 1 / 3            # of the bend, with control
+
+
+def strip(base, seed, views):
+    """The dive, and the result of COLMAP with the targets."""
+    data = runs.simulated(f"strip-{seed}-{views}", base, "--preset", "transect", "--seed", seed, "--views", views,
+                          "--targets", 30, "--target-side", 0.2, "--medium", "water", "--truth", 0, "--width", 640,
+                          "--height", 480, "--fov-degrees", 95, "--coarseness", 2, "--samples", 2).data
+    out = data.parent / f"{data.name}-poses"
+    if not (out / "refined" / "report.json").exists():
+        brought = as_measured(data, data.parent / f"{data.name}-right")
+        brought.options = ("--targets", "find", "--find-targets=--families circular12")
+        dive_runs.run(brought, data, out)
+    return data, out
+
+
+def along_strip(data):
+    """A function from a place to its part of the strip, from 0 to 1."""
+    places = list(centres(data / "sparse").values())
+    first, along = line_of(places)
+    distance = lambda place: sum(a * (p - f) for a, p, f in zip(along, place, first))
+    length = max(map(distance, places))
+    return lambda place: distance(place) / length
+
+
+def bend(model, data, folder):
+    """The largest mean error of the heights in a part of the strip [m]."""
+    measured(folder / "align.log", *PROGRAMS.align(model, data / "sparse", folder / "aligned"))
+    truth, found, part = centres(data / "sparse"), centres(folder / "aligned"), along_strip(data)
+    errors = [[] for _ in range(PARTS)]
+    for name, place in found.items():
+        errors[min(PARTS - 1, max(0, int(PARTS * part(truth[name]))))].append(place[2] - truth[name][2])
+    return max(abs(sum(some) / len(some)) for some in errors if some)
+
+
+def end_plates(data, out):
+    """The true places of the plates that photographs show near the ends of the strip."""
+    truth = {plate["label"]: plate["centre"] for plate in json.loads((data / "true_targets.json").read_text())["plates"]}
+    found = {one["label"] for one in json.loads((out / "refined" / "target_places.json").read_text())["targets"]}
+    part = along_strip(data)
+    return {label: truth[label] for label in found & set(truth) if not END < part(truth[label]) < 1 - END}
+
+
+def measure(seed, views=VIEWS, base=BASE):
+    """A row of the table, and whether control helps enough."""
+    data, out = strip(base, seed, views)
+    brought, plates = as_measured(data, data.parent / f"{data.name}-right"), end_plates(data, out)
+    bends = []
+    for name in ("free", "control"):
+        folder = data.parent / f"{data.name}-{name}"
+        folder.mkdir(exist_ok=True)
+        options = ["--scale-from", brought.scale_from]
+        if name == "control":
+            (folder / "control.json").write_text(control_json(plates, {}, random.Random(seed)))
+            options += ["--control", folder / "control.json"]
+        _, model = refined(brought, out, folder, *options)
+        bends.append(bend(model, data, folder))
+    without, with_control = bends
+    return (f"| {seed} | {views} | {len(plates)} | {1e3 * without:.1f} mm | {1e3 * with_control:.1f} mm | "
+            f"{with_control / without:.2f} |"), with_control <= SHARE * without
+
+
+HEAD = ("| seed | photographs | plates at the ends | bend without control | with control | ratio |\n"
+        "|---|---|---|---|---|---|")
+
+
+@point(f"a strip of {VIEWS} photographs: with control points of {1e3 * SIGMA:.0f} mm at both ends, the bend of the "
+       "heights is at most a third")
+def control_strip(work):
+    found = [measure(seed, VIEWS, work) for seed in FRESH_SEEDS]
+    return "\n".join([HEAD, *(row for row, _ in found)]), all(good for _, good in found)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=int, nargs="+", default=[73])
+    parser.add_argument("--views", type=int, default=VIEWS)
+    parser.add_argument("--base", type=pathlib.Path, default=BASE)
+    given = parser.parse_args()
+    print(HEAD)
+    for seed in given.seeds:
+        row, good = measure(seed, given.views, given.base)
+        print(row, "" if good else "missed", flush=True)
+
+
+if __name__ == "__main__":
+    main()
