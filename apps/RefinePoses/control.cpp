@@ -144,11 +144,6 @@ std::optional<pose::KnownDistance> known_distance(const control::Bar& bar, const
   return {};
 }
 
-// A number is the label of a target, and never the name of a photograph.
-bool is_number(const std::string& label) {
-  return std::ranges::all_of(label, [](char c) { return c >= '0' && c <= '9'; });
-}
-
 std::optional<pose::KnownPlace> known_place(const control::ControlPoint& point,
                                             const Labels& labels,
                                             std::vector<std::string>& unused) {
@@ -158,11 +153,10 @@ std::optional<pose::KnownPlace> known_place(const control::ControlPoint& point,
     place.index = target->source;
     return place;
   }
-  if (is_number(point.label)) {
-    unused.push_back(fmt::format("{}: {}", point.where, why));
-    return {};
-  }
-  if (const auto image = labels.image(point.label, point.where)) {
+  // A number is the label of a target, and never the name of a photograph.
+  const auto image = control::is_number(point.label) ? std::optional<std::size_t>()
+                                                     : labels.image(point.label, point.where);
+  if (image) {
     place.of = Between::images;
     place.index = *image;
     return place;

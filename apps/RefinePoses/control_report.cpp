@@ -34,7 +34,7 @@ std::size_t photographs_of_both(const pose::Bundle& bundle, const pose::KnownDis
       std::ranges::count_if(first, [&](std::size_t image) { return second.contains(image); }));
 }
 
-// Moves known and found coordinates.
+// The fit with known and found coordinates in the world.
 pose::PlaceFit in_world(pose::PlaceFit fit, const LocalFrame& frame) {
   for (std::size_t k = 0; k < 3; ++k) {
     const double origin = frame.origin(static_cast<Eigen::Index>(k));

@@ -59,7 +59,7 @@ pose::Uncertainty write_results(const fs::path& folder,
                                 const Results& results,
                                 const std::function<pose::Uncertainty()>& compute) {
   constexpr const char* kReport = "report.json";
-  // That of another run does not belong to this model.
+  // The places of targets of an earlier run do not belong to this model.
   fs::remove(folder / control::kTargetPlaces);
   write_folder(folder, [&](const fs::path& staging) {
     write_model(staging);

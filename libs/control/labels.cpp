@@ -38,6 +38,10 @@ bool for_each_named(AnyControl& control, const std::string& name, Use use) {
 
 }  // namespace
 
+bool is_number(std::string_view label) {
+  return !label.empty() && std::ranges::all_of(label, is_digit);
+}
+
 std::string label_key(std::string_view label) {
   std::string key;
   bool in_number = false;
@@ -50,7 +54,7 @@ std::string label_key(std::string_view label) {
     key += c;
   }
   key = lower_case(std::move(key));
-  if (!key.empty() && std::ranges::all_of(key, is_digit)) key = "target" + key;
+  if (is_number(key)) key = "target" + key;
   return key;
 }
 

@@ -10,6 +10,9 @@
 
 namespace axial::control {
 
+// Whether a label has digits only, and at least one.
+bool is_number(std::string_view label);
+
 // Two labels name the same target if their keys are equal. Upper and lower case, blanks,
 // underscores and zeros before a number do not matter, and a number alone is that of a circular
 // target: "target 7", "Target_07" and "7" have the same key, "point 7" and "tag 7" have others.

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "base/split.h"
+#include "control/labels.h"
 #include "io/cameras/table_text.h"
 #include "private/readers.h"
 #include "private/stated_points.h"
@@ -71,8 +72,10 @@ Fields fields_of(const Line& line, char delimiter) {
 std::optional<Header> header_in(const Line& line) {
   const char delimiter = delimiter_of(line.text);
   const auto fields = io::split_fields(line.text, delimiter);
-  const auto is_number = [](const std::string& field) { return io::number_in(field).has_value(); };
-  if (!fields || std::ranges::any_of(*fields, is_number)) return {};
+  const auto reads_as_number = [](const std::string& field) {
+    return io::number_in(field).has_value();
+  };
+  if (!fields || std::ranges::any_of(*fields, reads_as_number)) return {};
   Header header = header_of(*fields, delimiter, line.where);
   if (!header.has(Meaning::label)) return {};
   return header;
@@ -147,9 +150,7 @@ void take_field(const std::string& field, Meaning meaning, StatedPoint& point) {
 
 // A bare number is that of a circular target.
 std::string full_label(const std::string& label) {
-  const bool is_number =
-      !label.empty() && std::ranges::all_of(label, [](char c) { return c >= '0' && c <= '9'; });
-  return is_number ? "target " + label : label;
+  return is_number(label) ? "target " + label : label;
 }
 
 StatedPoint point_in(const Line& line, const Header& header) {

@@ -107,7 +107,7 @@ double AdjustOptions::sigma_before(const BundleCamera& camera, int number) const
 
 bool AdjustOptions::know_lengths() const {
   const auto in_plan = [](const KnownPlace& place) { return place.knows(0) && place.knows(1); };
-  return !distances.empty() || !positions.empty() || std::ranges::count_if(places, in_plan) >= 2;
+  return !distances.empty() || positions.size() >= 3 || std::ranges::count_if(places, in_plan) >= 2;
 }
 
 AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSink& sink,

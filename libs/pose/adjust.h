@@ -90,7 +90,8 @@ struct AdjustOptions : Unknowns {
   std::vector<KnownDistance> distances;
   std::vector<KnownPosition> positions;
   std::vector<KnownPlace> places;
-  // True if these determine the scale: a distance or a position, or x and y of two places.
+  // True if these determine the scale at the start (bring_to_metres()): a distance, three
+  // positions, or x and y of two places.
   bool know_lengths() const;
   bool points_known = false;  // true: all points stay constant
   bool poses_known = false;   // true: all poses stay constant

@@ -164,7 +164,15 @@ struct Suspect {
   std::string name, line;
 };
 
+bool has_named(const AdjustOptions& options) {
+  return !options.places.empty() ||
+         std::ranges::any_of(options.distances,
+                             [](const KnownDistance& known) { return !known.name.empty(); });
+}
+
+// The known values of which some may be left out, the largest deviation first.
 std::vector<Suspect> suspects(const Bundle& bundle, const AdjustOptions& options) {
+  if (options.points_known || options.poses_known || !has_named(options)) return {};
   const ControlFits fits = control_fits(bundle, options, options.distances, options.places, true);
   std::vector<Suspect> found;
   for (std::size_t i = 0; i < fits.distances.size(); ++i)
@@ -180,19 +188,7 @@ std::vector<Suspect> suspects(const Bundle& bundle, const AdjustOptions& options
   return found;
 }
 
-bool has_named(const AdjustOptions& options) {
-  return !options.places.empty() ||
-         std::ranges::any_of(options.distances,
-                             [](const KnownDistance& known) { return !known.name.empty(); });
-}
-
-// The known values of which some may be left out, the largest deviation first.
-std::vector<Suspect> all_suspects(const Bundle& bundle, const AdjustOptions& options) {
-  if (options.points_known || options.poses_known || !has_named(options)) return {};
-  return suspects(bundle, options);
-}
-
-// Whether a value is wrong, by other values.
+// Whether other values show that a value is wrong.
 bool is_wrong(const Suspect& one) {
   return one.deviation > kWrong && one.control > kLeastControl;
 }
@@ -206,11 +202,10 @@ AdjustOptions without(AdjustOptions options, const Suspect& one) {
   return options;
 }
 
-// The length or place among `before` that nothing controls any more with `options`, from which the
-// first of `before` was removed; nothing if there is none.
+// The length or place among `before` that nothing controls any more with `options`, which lacks one
+// of `before`; nothing if there is none.
 std::optional<Suspect> uncontrolled_now(std::span<const Suspect> before,
                                         const AdjustOptions& options, const Bundle& bundle) {
-  if (!has_named(options)) return {};
   constexpr double kRounding = 1e-3;
   for (const Suspect& now : suspects(bundle, options)) {
     if (now.control > kLeastControl) continue;
@@ -334,7 +329,7 @@ std::vector<std::string> leave_out_outliers(const Bundle& bundle, AdjustOptions&
 
 bool leave_out_worst(const Bundle& bundle, AdjustOptions& options,
                      std::vector<std::string>& lines) {
-  const std::vector<Suspect> found = all_suspects(bundle, options);
+  const std::vector<Suspect> found = suspects(bundle, options);
   for (const Suspect& one : found) {
     if (!is_wrong(one)) continue;
     AdjustOptions others = without(options, one);
@@ -347,7 +342,7 @@ bool leave_out_worst(const Bundle& bundle, AdjustOptions& options,
 }
 
 std::vector<std::string> contradictions(const Bundle& bundle, const AdjustOptions& options) {
-  const std::vector<Suspect> found = all_suspects(bundle, options);
+  const std::vector<Suspect> found = suspects(bundle, options);
   std::vector<std::string> lines;
   std::set<std::string> named;
   for (const Suspect& one : found) {

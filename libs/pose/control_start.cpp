@@ -86,17 +86,21 @@ Similarity in_plan(const Places& plan, bool with_scale) {
   return result;
 }
 
-Places whole_places(const Bundle& bundle, const AdjustOptions& options) {
-  return places_of(bundle, options, [](const KnownPlace& place) { return place.knows_all(); });
+// The wholly known places, if they determine a similarity; otherwise none.
+Places places_of_similarity(const Bundle& bundle, const AdjustOptions& options) {
+  const Places whole =
+      places_of(bundle, options, [](const KnownPlace& place) { return place.knows_all(); });
+  if (whole.known.cols() >= 3 && relative_width(whole.known) >= kLineWidth &&
+      relative_width(whole.present) >= kLineWidth)
+    return whole;
+  return {};
 }
 
 }  // namespace
 
 void place_by_control(Bundle& bundle, const AdjustOptions& options) {
   if (options.places.empty()) return;
-  const Places whole = whole_places(bundle, options);
-  if (whole.known.cols() >= 3 && relative_width(whole.known) >= kLineWidth &&
-      relative_width(whole.present) >= kLineWidth)
+  if (const Places whole = places_of_similarity(bundle, options); whole.known.cols() > 0)
     return move_places(bundle, robust_similarity(whole.present, whole.known).similarity);
   const auto heights = [&] {
     return places_of(bundle, options, [](const KnownPlace& place) { return place.knows(2); });
@@ -115,10 +119,8 @@ void place_by_control(Bundle& bundle, const AdjustOptions& options) {
 }
 
 std::vector<std::string> signs_of_a_mirror(const Bundle& bundle, const AdjustOptions& options) {
-  const Places whole = whole_places(bundle, options);
-  if (whole.known.cols() < 3 || relative_width(whole.known) < kLineWidth ||
-      relative_width(whole.present) < kLineWidth)
-    return {};
+  const Places whole = places_of_similarity(bundle, options);
+  if (whole.known.cols() == 0) return {};
   if (const MirroredFit fit = mirrored_fit(whole.present, whole.known); fit.better)
     return {"Control points: " + mirrored_line(fit)};
   if (against_view(bundle).z() > 0) return {};

@@ -37,19 +37,30 @@ def reef(base, seed):
     data = runs.simulated(f"plates-reef-{seed}", base, "--preset", "reef", "--seed", seed, "--views", 16, "--targets",
                           6, "--bars", ",".join([str(BAR)] * 3), "--target-side", 0.15, "--medium", "water", "--truth",
                           0, "--coarseness", 2).data
+    return data, posed(data)
+
+
+def posed(data):
+    """The folder of `reconstruct` up to the poses, with targets and the right numbers of lens and port."""
     out = data.parent / f"{data.name}-poses"
     if not (out / "refined" / "report.json").exists():
         brought = as_measured(data, data.parent / f"{data.name}-right")
         brought.options = ("--targets", "find", "--find-targets=--families circular12")
         dive_runs.run(brought, data, out)
-    return data, out
+    return out
+
+
+def found_plates(data, out):
+    """The true places of the plates that RefinePoses found, by label."""
+    plates = json.loads((data / "true_targets.json").read_text())["plates"]
+    found = {one["label"] for one in json.loads((out / "refined" / "target_places.json").read_text())["targets"]}
+    return {plate["label"]: plate["centre"] for plate in plates if plate["label"] in found}
 
 
 def plates_of(data, out):
     """The true places of single plates that RefinePoses found: four far from each other, and the others."""
-    truth = {plate["label"]: plate["centre"] for plate in json.loads((data / "true_targets.json").read_text())["plates"]}
-    found = {one["label"] for one in json.loads((out / "refined" / "target_places.json").read_text())["targets"]}
-    labels = [label for label in truth if label in found]
+    truth = found_plates(data, out)
+    labels = list(truth)
     chosen = max(itertools.combinations(labels, 4),
                  key=lambda four: min(math.dist(truth[a], truth[b]) for a, b in itertools.combinations(four, 2)))
     return {label: truth[label] for label in chosen}, {label: truth[label] for label in labels if label not in chosen}

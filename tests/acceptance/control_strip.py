@@ -7,14 +7,12 @@ COLMAP runs once. RefinePoses runs with a known length, and with the plates at t
 of 10 mm besides. The heights of the camera centres are compared after the best similarity, in sixths of the strip."""
 
 import argparse
-import json
 import pathlib
 import random
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-import dive_runs  # noqa: E402
-from control_draws import SIGMA, control_json, refined  # noqa: E402
+from control_draws import SIGMA, control_json, found_plates, posed, refined  # noqa: E402
 from dive_runs import as_measured, line_of  # noqa: E402
 from points import BASE, point  # noqa: E402
 from support import runs  # noqa: E402
@@ -32,12 +30,7 @@ def strip(base, seed, views):
     data = runs.simulated(f"strip-{seed}-{views}", base, "--preset", "transect", "--seed", seed, "--views", views,
                           "--targets", 30, "--target-side", 0.2, "--medium", "water", "--truth", 0, "--width", 640,
                           "--height", 480, "--fov-degrees", 95, "--coarseness", 2, "--samples", 2).data
-    out = data.parent / f"{data.name}-poses"
-    if not (out / "refined" / "report.json").exists():
-        brought = as_measured(data, data.parent / f"{data.name}-right")
-        brought.options = ("--targets", "find", "--find-targets=--families circular12")
-        dive_runs.run(brought, data, out)
-    return data, out
+    return data, posed(data)
 
 
 def along_strip(data):
@@ -61,10 +54,8 @@ def bend(model, data, folder):
 
 def end_plates(data, out):
     """The true places of the plates that photographs show near the ends of the strip."""
-    truth = {plate["label"]: plate["centre"] for plate in json.loads((data / "true_targets.json").read_text())["plates"]}
-    found = {one["label"] for one in json.loads((out / "refined" / "target_places.json").read_text())["targets"]}
     part = along_strip(data)
-    return {label: truth[label] for label in found & set(truth) if not END < part(truth[label]) < 1 - END}
+    return {label: place for label, place in found_plates(data, out).items() if not END < part(place) < 1 - END}
 
 
 def measure(seed, views=VIEWS, base=BASE):

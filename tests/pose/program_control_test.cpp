@@ -119,7 +119,8 @@ TEST_F(ControlProgram, ControlPointsPlaceTheModel) {
   }
 }
 
-// The result of a run is in UTM coordinates. With its poses, all points are checks.
+// The result of the first run is in UTM coordinates, and the second run keeps its poses. 5 mm: the
+// points of 2 mm, seen by poses that the first run found with these points.
 TEST_F(ControlProgram, KnownPosesKeepTheirFrame) {
   write_points();
   refined("--control control.json");

@@ -22,8 +22,8 @@ LEAST = 3            # photographs of a date that is reconstructed
 
 def add_options(parser):
     parser.add_argument("--dates", default="", help="the photographs are of several dates: exif, or a file of lines "
-                        "PHOTOGRAPHS,DATE (docs/dates.md). Poses are computed for all of them together, cloud, mesh "
-                        "and maps for each date, and each date is compared with the first")
+                        "PHOTOGRAPHS,DATE (docs/dates.md). The poses of all photographs are computed together; cloud, "
+                        "mesh and maps are made for each date, and each date is compared with the first")
     parser.set_defaults(date="", joint="")  # of the run for one date
 
 
