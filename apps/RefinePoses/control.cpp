@@ -198,9 +198,10 @@ control::Control read_control(const ControlOptions& options) {
     add(options.control, control::Role::points);
   if (options.epsg > 0 && all.points.empty())
     fail("--epsg {}: is for control points, and there are none", options.epsg);
-  for (const std::string& note : all.notes) log_info("{}", note);
   if (!options.checks.empty())
     control::mark_checks(all, io::split_list(options.checks, "--checks " + options.checks));
+  control::set_map_scale(all);
+  for (const std::string& note : all.notes) log_info("{}", note);
   return all;
 }
 
@@ -217,6 +218,12 @@ AddedControl add_control(const control::Control& control, pose::Bundle& bundle,
   for (const control::ControlPoint& point : control.points)
     if (auto known = known_place(point, labels, added.unused))
       (point.check ? added.checks.places : refine.adjust.places).push_back(*std::move(known));
+  for (std::vector<pose::KnownDistance>* distances :
+       {&refine.adjust.distances, &added.checks.distances})
+    for (pose::KnownDistance& known : *distances) {
+      known.metres *= control.map_scale;
+      known.sigma *= control.map_scale;
+    }
   return added;
 }
 

@@ -49,7 +49,8 @@ struct AddedControl {
 // Adds the targets to the bundle, and bars and control points to `refine`: to `refine.adjust` those
 // that are used. A control point whose label is no target, but the name of an image, is a camera
 // centre: so depths of a gauge enter. Targets in photographs that the bundle does not have are not
-// used.
+// used. All known distances, also those that `refine.adjust` has before, become lengths on the map
+// (Control::map_scale).
 AddedControl add_control(const control::Control& control, pose::Bundle& bundle,
                          pose::RefineOptions& refine);
 

@@ -10,8 +10,8 @@ namespace axial::apps {
 namespace {
 
 void check_effective_lens(const Options& options) {
-  for (const char* other :
-       {"input-file", "output-folder", "scale-from", "refine", "database", "targets"})
+  for (const char* other : {"input-file", "output-folder", "scale-from", "refine", "database",
+                            "targets", "bars", "control", "rig"})
     if (given(options.parsed, other))
       fail("--effective-lens {}: contradicts --{}", options.effective_lens.string(), other);
   if (options.lens.empty()) fail("--lens is missing: the lens calibrated in air");

@@ -41,6 +41,9 @@ void declare_scene(OptionList& visible, Arguments& a) {
       .add_with_default("coarseness", &a.preset.coarseness,
                         "factor for the distance between the vertices of the mesh")
       .add_with_default("relief", &a.preset.relief, "factor for the scene's heights")
+      .add_with_default("overlap", &a.preset.overlap,
+                        "share of its ground that a view of transect has in common with the next")
+      .range(0, 0.95)
       .add_switch("changed", &a.preset.changed,
                   "a second survey of the reef: a boulder moved, a patch of 1 m x 1 m grew by 20 "
                   "mm, and the views and the noise are others; plates stay; writes change.json")
@@ -78,7 +81,18 @@ void declare_port(OptionList& visible, Arguments& a) {
       .add_with_default("dome-y", &a.dome_y, "y: camera centre to dome centre [m]")
       .add_with_default("dome-z", &a.dome_z, "z: camera centre to dome centre [m]")
       .add("n-glass", &a.n_glass, "refractive index of the glass")
-      .add("n-water", &a.n_water, "refractive index of the water");
+      .add("n-water", &a.n_water, "refractive index of the water")
+      .add(
+          "rig-base", &a.second_camera.base,
+          "second camera to the right of each view, by this distance [m]; photographs are in left/ "
+          "and right/")
+      .range(0.001, 100)
+      .add_with_default("rig-port-distance", &a.second_camera.port_distance,
+                        "camera centre to glass of the second camera [m]")
+      .add_with_default("rig-delay", &a.second_camera.delay,
+                        "how much later the second camera takes its photographs, in intervals "
+                        "between photographs")
+      .range(-1, 1);
 }
 
 void declare_photographs(OptionList& visible, Arguments& a) {
@@ -155,6 +169,8 @@ void apply_port_options(simulate::Preset& preset, const Arguments& a, const Pars
       fail("--{} is for a flat port, but --dome-radius makes a dome", of_flat);
   for (const char* of_dome : {"dome-x", "dome-y", "dome-z"})
     if (!dome && given(parsed, of_dome)) fail("--{} needs --dome-radius", of_dome);
+  for (const char* of_rig : {"rig-port-distance", "rig-delay"})
+    if (given(parsed, of_rig) && !given(parsed, "rig-base")) fail("--{} needs --rig-base", of_rig);
   if (dome) port.dome = simulate::Dome{{a.dome_x, a.dome_y, a.dome_z}, a.dome_radius};
   if (given(parsed, "n-glass")) port.n_glass = a.n_glass;
   if (given(parsed, "n-water")) port.n_water = a.n_water;

@@ -7,6 +7,7 @@
 
 #include "base/program.h"
 #include "simulate/presets.h"
+#include "simulate/second_camera.h"
 
 namespace axial::apps {
 
@@ -24,6 +25,7 @@ struct Arguments {
   std::vector<double> bars;  // lengths [m]
   double water_level = 0;
   double dome_radius = 0, dome_x = 0, dome_y = 0, dome_z = 0;
+  simulate::SecondCamera second_camera;
   double port_distance = 0, port_thickness = 0, tilt_degrees = 0, n_glass = 1, n_water = 1;
 };
 

@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "io/images/image.h"
 #include "plates.h"
+#include "simulate/second_camera.h"
 #include "write_scene.h"
 
 namespace axial::apps {
@@ -21,21 +22,23 @@ std::uint32_t noise_seed(const simulate::PresetOptions& preset) {
 // Renders the images and truth of all views in one medium, as far as the options ask for them.
 void photograph(const Arguments& a, const simulate::Preset& preset, const simulate::RayScene& scene,
                 const simulate::Shader& shader, bool water, const std::filesystem::path& folder) {
-  make_folder(folder);
+  for (std::size_t i = 0; i < preset.views.size(); ++i)
+    make_folder((folder / view_name(preset, i)).parent_path());
   const ProgressSink progress = console_progress(water ? "Images (water)" : "Images (air)");
   for (std::size_t i = 0; i < preset.views.size(); ++i) {
     const simulate::View& view = preset.views[i];
     const simulate::Port through = port_of_view(preset, view);
     const simulate::Port* port = water ? &through : nullptr;
     if (a.truth)
-      write_truth(folder, view_name(i), simulate::render_truth(scene, preset.lens, port, view));
+      write_truth(folder, view_name(preset, i),
+                  simulate::render_truth(scene, preset.lens, port, view));
     if (!a.truth_only) {
       cv::Mat3f radiance =
           simulate::render_radiance(scene, shader, preset.lens, port, view, a.samples);
       simulate::add_haze(radiance, a.haze);
       const auto key = simulate::noise_key(noise_seed(a.preset), i, water);
-      io::write_jpeg(folder / (view_name(i) + ".jpg"), simulate::develop(radiance, a.noise, key),
-                     a.jpeg_quality);
+      io::write_jpeg(folder / (view_name(preset, i) + ".jpg"),
+                     simulate::develop(radiance, a.noise, key), a.jpeg_quality);
     }
     progress(i + 1, preset.views.size());
   }
@@ -70,7 +73,7 @@ void simulate_scene(const Arguments& a, const simulate::Preset& preset,
   if (preset.moved) write_change(folder / "change.json", preset, simulate::true_change(preset));
   if (!a.truth_only) {
     write_port(folder / "housing.json", preset);
-    write_sparse_model(folder / "sparse", preset.lens, preset.views,
+    write_sparse_model(folder / "sparse", preset,
                        simulate::true_points(scene, shader, preset.lens, preset.views,
                                              a.sparse_points, a.preset.seed));
   }
@@ -89,6 +92,7 @@ int run(int argc, char** argv) {
   apply_lens_option(preset, arguments);
   apply_port_options(preset, arguments, parsed);
   simulate::check_ports(preset);
+  if (given(parsed, "rig-base")) simulate::add_second_camera(preset, arguments.second_camera);
   simulate_scene(arguments, preset, arguments.output);
   return 0;
 }

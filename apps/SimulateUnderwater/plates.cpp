@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plates.h"
 
+#include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "base/error.h"
 #include "io/bytes/json.h"
-#include "targets/family.h"
 #include "targets/pattern.h"
 #include "write_scene.h"
 
@@ -18,22 +19,70 @@ json vector_json(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
+json pixel_json(const Eigen::Vector2d& pixel) {
+  constexpr double kColmapCentre = 0.5;  // of COLMAP's first pixel; the simulator's is 0
+  return {pixel.x() + kColmapCentre, pixel.y() + kColmapCentre};
+}
+
+// The centre of the area inside a closed line.
+Eigen::Vector2d centre_of_area(const std::vector<Eigen::Vector2d>& line) {
+  double twice = 0;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const Eigen::Vector2d a = line[i] - line[0], b = line[(i + 1) % line.size()] - line[0];
+    const double area = a.x() * b.y() - a.y() * b.x();
+    twice += area;
+    sum += area * (a + b) / 3;
+  }
+  return line[0] + sum / twice;
+}
+
+// Adds what can be measured in a photograph: "dot", the centre of the area of a ring's dot, or
+// "corners", those of a square's black border.
+void add_outline(json& image, const simulate::Plate& plate, const targets::Family& family,
+                 const simulate::Lens& lens, const simulate::Port* port,
+                 const simulate::View& view) {
+  const targets::Pattern pattern(family, targets::numbers_of(family).first);
+  std::vector<Eigen::Vector2d> outline;
+  if (family.kind == targets::Kind::ring) {
+    constexpr int kPoints = 180;
+    for (int i = 0; i < kPoints; ++i)
+      outline.push_back(Eigen::Rotation2Dd(2 * std::numbers::pi * i / kPoints) *
+                        Eigen::Vector2d(1 / pattern.half_plate(), 0));
+  } else {
+    const double half = pattern.half_marker() / pattern.half_plate();
+    outline = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
+  }
+  const auto pixels = simulate::pixels_of(plate, outline, lens, port, view);
+  if (!pixels) return;
+  if (family.kind == targets::Kind::ring) {
+    image["dot"] = pixel_json(centre_of_area(*pixels));
+  } else {
+    for (const Eigen::Vector2d& corner : *pixels) image["corners"].push_back(pixel_json(corner));
+  }
+}
+
 // The images of all plates in one medium, by the names of the photographs.
 json images_json(const PlatesOnGround& plates, const simulate::RayScene& scene,
                  const simulate::Preset& preset, bool water) {
-  constexpr double kColmapCentre = 0.5;  // of COLMAP's first pixel; the simulator's is 0
   json images = json::object();
   for (std::size_t i = 0; i < preset.views.size(); ++i) {
-    json& image = images[view_name(i) + ".jpg"] = json::array();
+    json& image = images[view_name(preset, i) + ".jpg"] = json::array();
     const simulate::Port port = port_of_view(preset, preset.views[i]);
-    for (std::size_t k = 0; k < plates.plates.size(); ++k)
-      if (const auto seen = simulate::image_of(plates.plates[k], scene, preset.lens,
-                                               water ? &port : nullptr, preset.views[i]))
-        image.push_back({{"label", plates.labels[k]},
-                         {"x", seen->centre.x() + kColmapCentre},
-                         {"y", seen->centre.y() + kColmapCentre},
-                         {"width", seen->width},
-                         {"oblique_degrees", seen->oblique / simulate::kRadians}});
+    for (std::size_t k = 0; k < plates.plates.size(); ++k) {
+      const simulate::Port* in_front = water ? &port : nullptr;
+      const auto seen =
+          simulate::image_of(plates.plates[k], scene, preset.lens, in_front, preset.views[i]);
+      if (!seen) continue;
+      const json centre = pixel_json(seen->centre);
+      image.push_back({{"label", plates.labels[k]},
+                       {"x", centre[0]},
+                       {"y", centre[1]},
+                       {"width", seen->width},
+                       {"oblique_degrees", seen->oblique / simulate::kRadians}});
+      add_outline(image.back(), plates.plates[k], plates.family, preset.lens, in_front,
+                  preset.views[i]);
+    }
   }
   return images;
 }
@@ -42,11 +91,11 @@ json images_json(const PlatesOnGround& plates, const simulate::RayScene& scene,
 
 PlatesOnGround plates_on(const simulate::TriangleMesh& ground, const simulate::Preset& preset,
                          const Arguments& a) {
-  PlatesOnGround result{{}, {}, a.bars};
+  PlatesOnGround result{{}, {}, a.bars, {}};
   const auto single = static_cast<std::size_t>(a.targets);
   const std::size_t count = single + 2 * a.bars.size();
   if (count == 0) return result;
-  const targets::Family family = targets::parse_family(a.target_family);
+  const targets::Family& family = result.family = targets::parse_family(a.target_family);
   const targets::Numbers numbers = targets::numbers_of(family);
   if (numbers.first + count > numbers.last + 1)
     fail("--targets {} and {} bars need {} targets, but {} has {}", a.targets, a.bars.size(), count,

@@ -7,6 +7,7 @@
 
 #include "arguments.h"
 #include "simulate/plates.h"
+#include "targets/family.h"
 
 namespace axial::apps {
 
@@ -14,6 +15,7 @@ struct PlatesOnGround {
   std::vector<simulate::Plate> plates;  // single ones first, then two for each bar
   std::vector<std::string> labels;      // of the plates
   std::vector<double> bars;             // lengths [m]
+  targets::Family family;
 };
 
 // Lays the plates of --targets and --bars on `ground`, numbered from the family's first target on.

@@ -15,20 +15,21 @@
 namespace axial::apps {
 namespace {
 
-io::ColmapImage colmap_image(std::size_t i, const simulate::View& view) {
+io::ColmapImage colmap_image(const simulate::Preset& preset, std::size_t i) {
+  const simulate::View& view = preset.views[i];
   io::ColmapImage image;
   image.id = static_cast<std::uint32_t>(i + 1);
-  image.camera = 1;
-  image.name = view_name(i) + ".jpg";
+  image.camera = static_cast<std::uint32_t>(view.camera + 1);
+  image.name = view_name(preset, i) + ".jpg";
   image.pose = {view.rotation, view.centre};
   return image;
 }
 
 constexpr double kColmapCentre = 0.5;  // of COLMAP's first pixel; the simulator's is 0
 
-io::ColmapCamera colmap_camera(const simulate::Lens& lens) {
+io::ColmapCamera colmap_camera(const simulate::Lens& lens, std::uint32_t id) {
   io::ColmapCamera camera;
-  camera.id = 1;
+  camera.id = id;
   camera.model = !lens.bend ? "PINHOLE" : lens.bend->fisheye ? "OPENCV_FISHEYE" : "OPENCV";
   camera.width = static_cast<std::uint64_t>(lens.width);
   camera.height = static_cast<std::uint64_t>(lens.height);
@@ -45,10 +46,7 @@ Rgb to_rgb(const Eigen::Vector3f& color) {
   return {byte(color.x()), byte(color.y()), byte(color.z())};
 }
 
-io::HousingPort port_of(const simulate::Preset& preset) {
-  const simulate::Port& port = preset.port;
-  if (preset.water_level)
-    return WaterSurface{{0, 0, -1}, {0, 0, *preset.water_level}, port.n_air, port.n_water};
+io::HousingPort housing_port(const simulate::Port& port) {
   if (port.dome)
     return refractive::DomePort<double>{port.dome->centre, port.dome->inner_radius,
                                         port.thickness,    port.n_air,
@@ -59,16 +57,19 @@ io::HousingPort port_of(const simulate::Preset& preset) {
 
 }  // namespace
 
-std::string view_name(std::size_t view) {
-  return fmt::format("{:04}", view);
+std::string view_name(const simulate::Preset& preset, std::size_t view) {
+  if (!preset.second_port) return fmt::format("{:04}", view);
+  return fmt::format("{}/{:04}", preset.views[view].camera == 1 ? "right" : "left",
+                     view % (preset.views.size() / 2));
 }
 
-void write_sparse_model(const std::filesystem::path& folder, const simulate::Lens& lens,
-                        std::span<const simulate::View> views,
+void write_sparse_model(const std::filesystem::path& folder, const simulate::Preset& preset,
                         std::span<const simulate::SparsePoint> points) {
   io::ColmapModel model;
-  model.cameras.push_back(colmap_camera(lens));
-  for (std::size_t i = 0; i < views.size(); ++i) model.images.push_back(colmap_image(i, views[i]));
+  model.cameras.push_back(colmap_camera(preset.lens, 1));
+  if (preset.second_port) model.cameras.push_back(colmap_camera(preset.lens, 2));
+  for (std::size_t i = 0; i < preset.views.size(); ++i)
+    model.images.push_back(colmap_image(preset, i));
   for (const simulate::SparsePoint& from : points) {
     io::ColmapPoint3D point;
     point.id = model.points.size() + 1;
@@ -87,7 +88,17 @@ void write_sparse_model(const std::filesystem::path& folder, const simulate::Len
 }
 
 void write_port(const std::filesystem::path& file, const simulate::Preset& preset) {
-  io::write_housing(file, io::housing_with(port_of(preset)));
+  const simulate::Port& port = preset.port;
+  io::Housing housing = io::housing_with(housing_port(port));
+  if (preset.water_level)
+    housing = io::housing_with(
+        WaterSurface{{0, 0, -1}, {0, 0, *preset.water_level}, port.n_air, port.n_water});
+  if (preset.second_port) {
+    housing = {};
+    housing.ports = {{"left", housing_port(port)}, {"right", housing_port(*preset.second_port)}};
+    housing.cameras = {{1, "left"}, {2, "right"}};
+  }
+  io::write_housing(file, housing);
 }
 
 void write_change(const std::filesystem::path& file, const simulate::Preset& preset,

@@ -13,18 +13,17 @@
 
 namespace axial::apps {
 
-// Returns the name of a view's files without extension, such as "0007". The view's image in the
-// sparse model has this name, too, with the extension .jpg.
-std::string view_name(std::size_t view);
+// Returns the name of a view's files without extension: "0007", or with two cameras "left/0007" and
+// "right/0007". The view's image in the sparse model has this name, too, with the extension .jpg.
+std::string view_name(const simulate::Preset& preset, std::size_t view);
 
-// Writes a COLMAP model with one camera, the true poses and the true observations: cameras.txt,
-// images.txt and points3D.txt in `folder`.
-void write_sparse_model(const std::filesystem::path& folder, const simulate::Lens& lens,
-                        std::span<const simulate::View> views,
+// Writes a COLMAP model with one or two cameras, the true poses and the true observations:
+// cameras.txt, images.txt and points3D.txt in `folder`.
+void write_sparse_model(const std::filesystem::path& folder, const simulate::Preset& preset,
                         std::span<const simulate::SparsePoint> points);
 
 // Writes a housing file with one port, "main", for every image: the preset's port, or the water
-// surface.
+// surface. With two cameras, the ports are "left" and "right", by COLMAP's cameras 1 and 2.
 void write_port(const std::filesystem::path& file, const simulate::Preset& preset);
 
 // Writes the change before a second survey: the volumes and areas of `change`, their sum, and the

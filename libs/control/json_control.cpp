@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Our JSON: targets.json, and files of points and bars.
-#include <algorithm>
-#include <cmath>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string_view>
 
 #include "base/error.h"
 #include "io/bytes/json.h"
+#include "private/json_entry.h"
 #include "private/readers.h"
 #include "private/stated_points.h"
 
@@ -16,72 +14,6 @@ namespace axial::control {
 namespace {
 
 using nlohmann::json;
-
-// An object of the file and its place, for messages.
-struct Entry {
-  const json& object;
-  std::string where;
-
-  const json* find(const char* key) const {
-    const auto found = object.find(key);
-    return found == object.end() || found->is_null() ? nullptr : &*found;
-  }
-  bool has(const char* key) const { return find(key) != nullptr; }
-  [[noreturn]] void refuse(const char* key, const char* expected) const {
-    const json* value = find(key);
-    fail("{}.{} is {}, but must be {}", where, key, value ? io::to_text(*value) : "missing",
-         expected);
-  }
-  double number(const char* key) const {
-    const json* value = find(key);
-    if (!value || !value->is_number() || !std::isfinite(value->get<double>()))
-      refuse(key, "a finite number");
-    return value->get<double>();
-  }
-  double number_or(const char* key, double otherwise) const {
-    return has(key) ? number(key) : otherwise;
-  }
-  std::string text(const char* key) const {
-    const json* value = find(key);
-    if (!value || !value->is_string() || value->get_ref<const std::string&>().empty())
-      refuse(key, "a text");
-    return value->get<std::string>();
-  }
-  bool flag(const char* key) const {
-    const json* value = find(key);
-    if (value && !value->is_boolean()) refuse(key, "true or false");
-    return value && value->get<bool>();
-  }
-  // The numbers of a list of this length.
-  std::vector<double> numbers(const char* key, std::size_t count, const char* expected) const {
-    const json* value = find(key);
-    if (!value || !value->is_array() || value->size() != count) refuse(key, expected);
-    std::vector<double> result;
-    for (const json& item : *value) {
-      if (!item.is_number() || !std::isfinite(item.get<double>())) refuse(key, expected);
-      result.push_back(item.get<double>());
-    }
-    return result;
-  }
-  void require_known(std::initializer_list<std::string_view> keys) const {
-    for (const auto& item : object.items())
-      if (std::ranges::find(keys, item.key()) == keys.end())
-        fail("{}.{} is no key of the format", where, item.key());
-  }
-};
-
-// Calls use(entry) for each object of the list at `key`.
-template <class Use>
-void for_each_entry(const json& file, const std::string& name, const char* key, Use use) {
-  const auto found = file.find(key);
-  if (found == file.end()) return;
-  if (!found->is_array()) fail_in(name, "{} must be a list", key);
-  for (std::size_t i = 0; i < found->size(); ++i) {
-    const Entry entry{(*found)[i], fmt::format("{}: {}[{}]", name, key, i)};
-    if (!entry.object.is_object()) fail("{} must be an object", entry.where);
-    use(entry);
-  }
-}
 
 std::array<Eigen::Vector2d, 4> corners_of(const Entry& entry) {
   constexpr const char* kExpected = "four lists of x, y and sigma";
@@ -92,8 +24,7 @@ std::array<Eigen::Vector2d, 4> corners_of(const Entry& entry) {
     const json& corner = (*value)[i];
     if (!corner.is_array() || corner.size() < 2) entry.refuse("corners", kExpected);
     for (std::size_t k = 0; k < 2; ++k) {
-      if (!corner[k].is_number() || !std::isfinite(corner[k].get<double>()))
-        entry.refuse("corners", kExpected);
+      if (!is_finite_number(corner[k])) entry.refuse("corners", kExpected);
       corners[i][static_cast<Eigen::Index>(k)] = corner[k].get<double>();
     }
   }

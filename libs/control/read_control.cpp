@@ -2,13 +2,16 @@
 #include "control/read_control.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <optional>
 
 #include "base/byte_order_mark.h"
 #include "base/error.h"
 #include "base/split.h"
 #include "control/labels.h"
 #include "io/cameras/table_text.h"
+#include "private/coordinate_system.h"
 #include "private/readers.h"
 
 namespace axial::control {
@@ -98,6 +101,23 @@ void append(Control& control, Control more) {
   append_new(control.bars, more.bars);
   std::ranges::move(more.images, std::back_inserter(control.images));
   std::ranges::move(more.notes, std::back_inserter(control.notes));
+}
+
+void set_map_scale(Control& control) {
+  constexpr double kMatters = 1e-5;
+  control.map_scale = 1;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  int count = 0;
+  for (const ControlPoint& point : control.points)
+    if (!point.check && has_plane(point)) sum += point.metres.head<2>(), ++count;
+  const auto system = control.crs.empty() ? std::nullopt : CoordinateSystem::from_text(control.crs);
+  if (count < 2 || !system) return;
+  const double scale = system->map_scale(sum / count);
+  if (!std::isfinite(scale) || std::abs(scale - 1) < kMatters) return;
+  control.map_scale = scale;
+  control.notes.push_back(fmt::format(
+      "one metre on the ground is {:.5f} m on the map of {}: known lengths are multiplied by this",
+      scale, control.crs.starts_with("EPSG:") ? control.crs : "the control points"));
 }
 
 Control read_control(const std::filesystem::path& file, const ControlReading& options) {

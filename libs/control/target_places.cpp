@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "control/target_places.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -10,6 +9,7 @@
 #include "base/error.h"
 #include "control/labels.h"
 #include "io/bytes/json.h"
+#include "private/json_entry.h"
 
 namespace axial::control {
 namespace {
@@ -25,35 +25,22 @@ const json& list_at(const json& content, const char* key, const std::string& nam
   return *found;
 }
 
-double finite_at(const json& value, const std::string& where) {
-  if (!value.is_number() || !std::isfinite(value.get<double>()))
+TargetPlace place_of(const Entry& entry) {
+  TargetPlace place;
+  place.label = entry.text("label");
+  place.world = {entry.number("x"), entry.number("y"), entry.number("z")};
+  const json* photographs = entry.find("photographs");
+  if (!photographs || !photographs->is_number_unsigned())
+    entry.refuse("photographs", "a number of photographs");
+  place.photographs = photographs->get<std::size_t>();
+  return place;
+}
+
+double covariance_at(const json& value, const std::string& where) {
+  if (value.is_null()) return kInfinite;
+  if (!is_finite_number(value))
     fail("{} is {}, but must be a finite number", where, io::to_text(value));
   return value.get<double>();
-}
-
-const json& member(const json& entry, const char* key, const std::string& where) {
-  const auto found = entry.find(key);
-  if (found == entry.end()) fail("{}.{} is missing", where, key);
-  return *found;
-}
-
-TargetPlace place_of(const json& entry, const std::string& where) {
-  if (!entry.is_object()) fail("{} must be an object", where);
-  TargetPlace place;
-  const json& label = member(entry, "label", where);
-  if (!label.is_string() || label.get_ref<const std::string&>().empty())
-    fail("{}.label is {}, but must be a text", where, io::to_text(label));
-  place.label = label.get<std::string>();
-  for (int k = 0; k < 3; ++k) {
-    const std::string key(1, "xyz"[k]);
-    place.world[k] = finite_at(member(entry, key.c_str(), where), where + "." + key);
-  }
-  const json& photographs = member(entry, "photographs", where);
-  if (!photographs.is_number_unsigned())
-    fail("{}.photographs is {}, but must be a number of photographs", where,
-         io::to_text(photographs));
-  place.photographs = photographs.get<std::size_t>();
-  return place;
 }
 
 Eigen::MatrixXd covariance_of(const json& rows, std::size_t targets, const std::string& name) {
@@ -68,8 +55,7 @@ Eigen::MatrixXd covariance_of(const json& rows, std::size_t targets, const std::
       fail("{}[{}] must be a list of {} numbers", where, i, size);
     for (std::size_t j = 0; j < size; ++j)
       covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-          rows[i][j].is_null() ? kInfinite
-                               : finite_at(rows[i][j], fmt::format("{}[{}][{}]", where, i, j));
+          covariance_at(rows[i][j], fmt::format("{}[{}][{}]", where, i, j));
   }
   return covariance;
 }
@@ -106,13 +92,13 @@ TargetPlaces read_target_places(const std::filesystem::path& file) {
   const json& rows = list_at(content, "covariance_m2", name);
   TargetPlaces places;
   std::map<std::string, std::string> known;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::string where = fmt::format("{}: targets[{}]", name, i);
-    places.targets.push_back(place_of(list[i], where));
+  for_each_entry(content, name, "targets", [&](const Entry& entry) {
+    places.targets.push_back(place_of(entry));
     const std::string& label = places.targets.back().label;
     const auto [before, is_new] = known.emplace(label_key(label), label);
-    if (!is_new) fail("{}.label is {}, but {} is in the list before", where, label, before->second);
-  }
+    if (!is_new)
+      fail("{}.label is {}, but {} is in the list before", entry.where, label, before->second);
+  });
   places.covariance = covariance_of(rows, list.size(), name);
   check_covariance(places.covariance, name);
   if (const auto crs = content.find("crs"); crs != content.end()) {

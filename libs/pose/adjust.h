@@ -167,8 +167,9 @@ AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSi
 // Estimates the standard deviation of the observations of features [px] from their reprojection
 // errors. Let N be the number of these observations, S the sum of their squared errors, each
 // divided by Observation::sigma, and U the number of unknowns: 6 for each pose of an image with
-// observations, except constant poses; 3 for each point, unless points are known; and 1 for each
-// free number of each camera. The result is sqrt(S / max(1, 2 N - U)), and at least 1e-9 px.
+// observations, except constant poses; 3 for each point that is no target, unless points
+// are known; and 1 for each free number of each camera. The result is sqrt(S / max(1, 2 N - U)),
+// and at least 1e-9 px.
 // Infinite errors count with the mean square of the finite errors.
 double observed_pixel_sigma(const Bundle& bundle, const AdjustOptions& options);
 

@@ -39,7 +39,8 @@ class AdjustProblem {
   // The index of the first image for which is_observed() is true; 0 if there is none. adjust() says
   // when its pose is constant.
   std::size_t anchor() const;
-  // True if the image has an observation or a known distance, position or place.
+  // True if the pose of the image is in the problem: the image has an observation, a known
+  // distance, position or place, or is in a frame of a rig.
   bool is_observed(std::size_t image) const {
     return problem_->HasParameterBlock(numbers_.data() + kPoseNumbers * image);
   }

@@ -82,6 +82,7 @@ void check_port(const Port& port, const Lens& lens);
 struct View {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  int camera = 0;  // 1: the second camera of a rig (second_camera.h)
 };
 
 // The calm water surface at the height `level` [m] in the world (z up), as a port in the camera

@@ -20,11 +20,25 @@ constexpr float kWhite = 0.75f, kBlack = 0.06f;  // reflectances
 constexpr double kLeastGap = 1.6;                // between centres of plates, in sides
 constexpr double kMostSlope = 0.6;               // of the ground under a plate, rise by run
 
+// `place` as in Plate::white.
+Eigen::Vector3d point_on(const Plate& plate, const Eigen::Vector2d& place) {
+  return plate.centre + plate.side / 2 * (plate.axes.leftCols<2>() * place);
+}
+
 // The corners of the upper side, for a reader from the upper left one clockwise.
 std::array<Eigen::Vector3d, 4> corners_of(const Plate& plate) {
-  const Eigen::Vector3d x = plate.axes.col(0) * plate.side / 2,
-                        y = plate.axes.col(1) * plate.side / 2;
-  return {plate.centre - x - y, plate.centre + x - y, plate.centre + x + y, plate.centre - x + y};
+  return {point_on(plate, {-1, -1}), point_on(plate, {1, -1}), point_on(plate, {1, 1}),
+          point_on(plate, {-1, 1})};
+}
+
+// The centre, the corners (clockwise for a reader), and places between them.
+std::vector<Eigen::Vector2d> places_on_plate() {
+  constexpr int kSteps = 8;
+  std::vector<Eigen::Vector2d> places{{0, 0}, {-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  for (int i = 0; i <= kSteps; ++i)
+    for (int k = 0; k <= kSteps; ++k)
+      places.emplace_back(2.0 * i / kSteps - 1, 2.0 * k / kSteps - 1);
+  return places;
 }
 
 // Random numbers in the order in which they are asked for.
@@ -53,7 +67,7 @@ std::optional<Eigen::Vector3d> random_place(const RayScene& ground, const Lens& 
 // Points of the ground below a square with sides of `side` around `middle`, seen from above.
 void add_ground(const RayScene& ground, const Eigen::Vector3d& middle, double side,
                 std::vector<Eigen::Vector3d>& points) {
-  constexpr int kSteps = 6;
+  constexpr int kSteps = 24;
   constexpr double kAbove = 0.5;  // [m]
   for (int i = 0; i <= kSteps; ++i)
     for (int k = 0; k <= kSteps; ++k) {
@@ -113,7 +127,7 @@ std::vector<Plate> try_to_lay(const RayScene& ground, const Lens& lens, std::spa
   std::vector<Eigen::Vector3d> points;
   add_ground(ground, *place - step, 1.5 * layout.side, points);
   if (bar > 0) add_ground(ground, *place + step, 1.5 * layout.side, points);
-  if (points.size() < 40) return {};
+  if (points.size() < 600) return {};
   const Plane plane = plane_above(points, *place);
   if (plane.slope.norm() > kMostSlope || plane.roughness > std::min(0.6 * layout.side, 0.2))
     return {};
@@ -224,18 +238,30 @@ Shader with_plates(Shader ground, std::vector<Plate> plates, std::uint32_t first
   };
 }
 
-std::optional<PlateImage> image_of(const Plate& plate, const RayScene& scene, const Lens& lens,
-                                   const Port* port, const View& view) {
-  std::vector<Eigen::Vector3d> points{plate.centre};
-  std::ranges::copy(corners_of(plate), std::back_inserter(points));
+std::optional<std::vector<Eigen::Vector2d>> pixels_of(const Plate& plate,
+                                                      std::span<const Eigen::Vector2d> places,
+                                                      const Lens& lens, const Port* port,
+                                                      const View& view) {
   std::vector<Eigen::Vector2d> pixels;
-  for (const Eigen::Vector3d& point : points) {
-    const auto pixel = pixel_of_point(lens, port, view, point);
-    if (!pixel || pixel->minCoeff() < 0 || pixel->x() > lens.width - 1 ||
-        pixel->y() > lens.height - 1 || hides(scene, lens, port, view, *pixel, point))
-      return std::nullopt;
+  for (const Eigen::Vector2d& place : places) {
+    const auto pixel = pixel_of_point(lens, port, view, point_on(plate, place));
+    if (!pixel) return std::nullopt;
     pixels.push_back(*pixel);
   }
+  return pixels;
+}
+
+std::optional<PlateImage> image_of(const Plate& plate, const RayScene& scene, const Lens& lens,
+                                   const Port* port, const View& view) {
+  const std::vector<Eigen::Vector2d> places = places_on_plate();
+  const auto seen = pixels_of(plate, places, lens, port, view);
+  if (!seen) return std::nullopt;
+  const std::vector<Eigen::Vector2d>& pixels = *seen;
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    if (pixels[i].minCoeff() < 0 || pixels[i].x() > lens.width - 1 ||
+        pixels[i].y() > lens.height - 1 ||
+        hides(scene, lens, port, view, pixels[i], point_on(plate, places[i])))
+      return std::nullopt;
   double twice = 0;
   for (std::size_t k = 1; k <= 4; ++k) {
     const Eigen::Vector2d &a = pixels[k], &b = pixels[k % 4 + 1];

@@ -53,9 +53,17 @@ struct PlateImage {
   double oblique = 0;      // between the plate's normal and the ray to the centre [rad]
 };
 
-// The image of `plate`, or nothing if a part of the plate is outside of the photograph or its
-// centre or a corner is hidden. `scene` contains the plate. `port`: in the camera frame of `view`;
-// null for a dry camera.
+// The pixels of places on the upper side of `plate`, in the coordinates of Plate::white, whether
+// they are hidden or not. Nothing if one has none. Pixel centres are integers. `port`: in the
+// camera frame of `view`; null for a dry camera.
+std::optional<std::vector<Eigen::Vector2d>> pixels_of(const Plate& plate,
+                                                      std::span<const Eigen::Vector2d> places,
+                                                      const Lens& lens, const Port* port,
+                                                      const View& view);
+
+// The image of `plate`, or nothing if a part of the plate is outside of the photograph or a part
+// of its upper side, which is sampled at 9 x 9 places, is hidden. `scene` contains the plate.
+// `port`: as above.
 std::optional<PlateImage> image_of(const Plate& plate, const RayScene& scene, const Lens& lens,
                                    const Port* port, const View& view);
 

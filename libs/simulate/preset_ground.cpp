@@ -34,11 +34,11 @@ void make_sand(Preset& preset, std::uint32_t seed, int views) {
 }
 
 void make_transect(Preset& preset, std::uint32_t seed, int views) {
-  constexpr double kOverlap = 0.55, kMargin = 0.5;
+  constexpr double kMargin = 0.5;
   preset.port = {tilted_normal(0), 0.020, 0.014, 1.0, 1.52, 1.333};
   preset.texture = {seed + 6000u, 1.0};
   RandomSequence random(seed + 6000u);
-  const double step = (1 - kOverlap) * length_seen(preset, kCameraHeight);
+  const double step = (1 - preset.overlap) * length_seen(preset, kCameraHeight);
   // Fields of view are wider in air, and images in air are rendered too.
   const double pixel_in_air = kCameraHeight / preset.lens.focal;
   Terrain& terrain = preset.terrain;

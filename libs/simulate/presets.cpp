@@ -161,6 +161,7 @@ constexpr int kMostViews = 100000;
 }  // namespace
 
 Port port_of_view(const Preset& preset, const View& view) {
+  if (view.camera == 1) return preset.second_port.value();
   if (!preset.water_level) return preset.port;
   return surface_port(*preset.water_level, view, preset.port.n_air, preset.port.n_water);
 }
@@ -191,7 +192,10 @@ Preset make_preset(const PresetOptions& options) {
   check_factor("scale", options.scale);
   check_factor("relief", options.relief);
   check_factor("coarseness", options.coarseness);
+  if (!(options.overlap >= 0 && options.overlap <= 0.95))
+    fail("overlap is {}: must be between 0 and 0.95", options.overlap);
   Preset preset;
+  preset.overlap = options.overlap;
   preset.lens = make_lens(options.width, options.height, options.horizontal_fov_degrees);
   std::string name = options.name;
   if (constexpr std::string_view kHazy = "-hazy"; name.ends_with(kHazy)) {

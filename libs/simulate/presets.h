@@ -24,6 +24,8 @@ struct PresetOptions {
   double relief = 1;
   // Factor of the distance between the mesh's vertices.
   double coarseness = 1;
+  // Of successive views of "transect" under water, as a share of the ground that a view sees.
+  double overlap = 0.55;
   // A second survey of "reef" after a change: see change_survey() (survey_change.h).
   bool changed = false;
 };
@@ -36,14 +38,16 @@ struct MovedBoulder {
 
 // A scene and the views of it, in the world frame: metres, z up.
 struct Preset {
-  Lens lens;  // of all views
-  Port port;  // of all views, unless `water_level` is set
+  Lens lens;                        // of all views
+  Port port;                        // of all views, unless `water_level` or `second_port` is set
+  std::optional<Port> second_port;  // of views of the second camera (second_camera.h)
   // Height of a water surface in the world [m]. If set, the surface replaces the port. Only n_air
   // and n_water of the port are then used.
   std::optional<double> water_level;
   Terrain terrain;
   TextureOptions texture;
   std::vector<View> views;
+  double overlap = PresetOptions{}.overlap;
   std::optional<MovedBoulder> moved = {};  // set in a second survey after a change
   double haze = 0;  // share of scattered light in the photographs (add_haze() of render.h); 0: none
 };
@@ -63,20 +67,20 @@ struct Preset {
 //   wide.
 // - "sand": low ripples with the views and the port of "reef". The contrast of the texture is about
 //   that of the image noise.
-// - "transect": one strip at the height of "reef". Successive views overlap by 55 % under water, so
-//   that most of the ground is seen by exactly two views.
+// - "transect": one strip at the height of "reef". Successive views overlap by
+//   PresetOptions::overlap: with 55 %, most of the ground is seen by exactly two views.
 // - "amphora": views around a leaning vessel with a neck and two handles amid blocks, which hide
 //   much of the ground and of each other, through the port of "closeup".
 //
 // "NAME-hazy" is the preset NAME in haze that leaves a seventh of the contrast. Throws an Error for
 // another name, for `changed` with another preset than "reef" and for a reef without a boulder that
-// can be moved (change_survey()), for a number of views outside [0,
-// 100000], for a scale, relief or coarseness outside [0.01, 100], and for a width, height or field
-// of view that make_lens() refuses.
+// can be moved (change_survey()), for a number of views outside [0, 100000], for a scale, relief or
+// coarseness outside [0.01, 100], for an overlap outside [0, 0.95], and for a width, height or
+// field of view that make_lens() refuses.
 Preset make_preset(const PresetOptions& options);
 
 // The port of `view` in its camera frame: the preset's water surface if Preset::water_level is set,
-// otherwise the preset's port.
+// otherwise the port of its camera.
 Port port_of_view(const Preset& preset, const View& view);
 
 // Throws an Error if check_port() (optics.h) refuses the port of a view. The message names the

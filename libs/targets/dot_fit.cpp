@@ -97,7 +97,8 @@ std::optional<DotFit> fit_dot(const cv::Mat1f& picture, const Ellipse& start) {
   if ((start.to_circle * (dot.centre - start.centre)).norm() > 0.5) return std::nullopt;
   const double growth = std::sqrt(start.to_circle.determinant() / dot.to_circle.determinant());
   if (growth < 0.5 || growth > 2) return std::nullopt;
-  return DotFit{dot, fit->covariance.topLeftCorner<2, 2>(), fit->outside, fit->inside, fit->blur};
+  return DotFit{
+      dot, fit->covariance.topLeftCorner<2, 2>(), fit->outside, fit->inside, fit->blur, fit->noise};
 }
 
 }  // namespace axial::targets

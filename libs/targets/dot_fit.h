@@ -29,6 +29,7 @@ struct DotFit {
   Eigen::Matrix2d covariance;  // of the centre [px^2]
   double outside = 0, inside = 0;
   double blur = 1;
+  double noise = 0;  // standard deviation of the residuals [brightness]
 };
 
 // Fits the outline of a bright or dark dot, begun at `start`, to the pixels within 1.6 times its

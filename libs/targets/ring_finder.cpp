@@ -17,6 +17,9 @@ namespace {
 constexpr int kWindow = 25;      // of the mean that separates black from white [px]
 constexpr double kLeastDot = 1;  // smaller half axis of a dot in the picture that is searched [px]
 constexpr double kMostDot = 14;  // larger half axis; larger dots are found at a lower resolution
+// The noise of the brightness around a dot, as a part of the step across its edge. Bare texture
+// that looks like a dot has more.
+constexpr double kMostNoise = 0.15;
 
 // True if the area inside the contour is about that of its ellipse, which has a usual shape.
 bool is_dot(const std::vector<cv::Point>& contour, const cv::RotatedRect& box) {
@@ -77,7 +80,7 @@ std::optional<Detection> read_target(const cv::Mat1f& grey, const Ellipse& dot,
                                      const Family& family, std::span<const std::uint32_t> codes) {
   if (!read_ring(grey, dot, family.bits)) return std::nullopt;
   const auto fit = fit_dot(grey, dot);
-  if (!fit) return std::nullopt;
+  if (!fit || fit->noise > kMostNoise * std::abs(fit->inside - fit->outside)) return std::nullopt;
   const auto ring = read_ring(grey, fit->dot, family.bits);
   if (!ring) return std::nullopt;
   const auto number = ring_number(ring->value, family.bits, codes);

@@ -16,7 +16,8 @@ from points import BASE, POINTS  # noqa: E402
 # Each module registers its points. The order of the modules is that of the points in the table.
 for module in ("clouds", "photographs", "times", "quality", "meshes", "unseen", "maps", "surveys",
                "whole_programs", "memory", "tiles", "survey_page", "still", "false_alarms", "dives",
-               "random_dives", "lawnmower", "boards", "pair_costs", "control_draws", "control_strip", "target_surveys"):
+               "random_dives", "lawnmower", "boards", "pair_costs", "control_draws", "control_strip", "target_surveys",
+               "rig_surveys", "target_detection"):
     importlib.import_module(module)
 
 

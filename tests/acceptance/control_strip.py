@@ -21,6 +21,7 @@ from support.runs import PROGRAMS, measured  # noqa: E402
 
 FRESH_SEEDS = (83, 84)   # not used while building
 VIEWS, PARTS = 60, 6
+OVERLAP = 0.6            # of successive photographs
 END = 0.12               # the part of the strip that is an end
 SHARE = 1 / 3            # of the bend, with control
 
@@ -28,8 +29,8 @@ SHARE = 1 / 3            # of the bend, with control
 def strip(base, seed, views):
     """The dive, and the result of COLMAP with the targets."""
     data = runs.simulated(f"strip-{seed}-{views}", base, "--preset", "transect", "--seed", seed, "--views", views,
-                          "--targets", 30, "--target-side", 0.2, "--medium", "water", "--truth", 0, "--width", 640,
-                          "--height", 480, "--fov-degrees", 95, "--coarseness", 2, "--samples", 2).data
+                          "--overlap", OVERLAP, "--targets", 30, "--target-side", 0.2, "--medium", "water", "--truth",
+                          0, "--width", 640, "--height", 480, "--coarseness", 2, "--samples", 2).data
     return data, posed(data)
 
 

@@ -4,6 +4,7 @@ the programs make of it in sequence."""
 
 import dataclasses
 import json
+import math
 import pathlib
 import re
 import shutil
@@ -84,9 +85,10 @@ PROGRAMS = {program.name: program for program in (
     Program("AlignModel", ("-i", "sim/sparse", "--reference", "other", "-o", "out"),
             (*MODEL, "other/images.txt"), ("other/cameras.txt", "other/points3D.txt")),
     Program("RefinePoses", ("-i", "few", "--lens", "lens.yaml", "--housing", "sim/housing.json",
-                            "--scale-from", "positions:positions.csv", "-o", "out"),
+                            "--scale-from", "positions:positions.csv", "--targets", "targets.json", "--bars",
+                            "lengths.csv", "--control", "places.json", "-o", "out"),
             ("few/cameras.txt", "few/images.txt", "few/points3D.txt", "sim/housing.json",
-             "positions.csv", "lens.yaml")),
+             "positions.csv", "lens.yaml", "targets.json", "lengths.csv", "places.json")),
     Program("CalibrateHousing", ("-i", "board/photos", "--lens", "board/lens.txt", "--housing",
                                  "board/start.json", "--board", "checkerboard:8x7:0.03", "--refine",
                                  "distance", "--distance-sigma", "0.0005", "-o", "out.json"),
@@ -109,6 +111,25 @@ def write_few(folder):
     (folder / "lens.yaml").write_text(
         f"model: {words[1]}\nwidth: {words[2]}\nheight: {words[3]}\n"
         f"parameters: [{', '.join(words[4:])}]\n")
+
+
+def write_targets(folder):
+    """Points of the model as targets, a bar between two of them, and their places."""
+    records = colmap_text.records
+    names = list(colmap_text.images_of(folder / "sim" / "sparse"))
+    keypoints = [line.split() for line in list(records(folder / MODEL[1]))[1::2]]
+    points = {words[0]: tuple(map(float, words[1:4])) for words in map(str.split, records(folder / MODEL[2]))}
+    seen = {point: [(name, *line[line.index(point) - 2:line.index(point)]) for name, line in zip(names, keypoints)
+                    if point in line[2::3]] for point in points}
+    chosen = sorted(points, key=lambda point: (-len(seen[point]), int(point)))[:4]
+    (folder / "targets.json").write_text(json.dumps({"targets": [
+        {"label": f"target {point}", "image": name, "x": float(x), "y": float(y), "sigma": 0.1}
+        for point in chosen for name, x, y in seen[point]]}))
+    first, second = chosen[:2]
+    (folder / "lengths.csv").write_text(
+        f"target {first},target {second},{math.dist(points[first], points[second]):.6f},0.0001\n")
+    (folder / "places.json").write_text(json.dumps({"points": [
+        {"label": f"target {point}", **dict(zip("xyz", points[point])), "sigma": 0.01} for point in chosen]}))
 
 
 def write_other(folder):
@@ -138,6 +159,7 @@ def make_all(binaries, folder):
     (folder / "clip.avi").write_bytes(moving_clip())
     subprocess.run([binaries / "drawn_boards", "1", folder / "board"], check=True, stdout=subprocess.DEVNULL)
     write_few(folder)
+    write_targets(folder)
     write_other(folder)
     (folder / "SimulateUnderwater.cfg").write_text("# A comment\nseed = 2\nrelief = 1.5\n")
     (folder / "control.json").write_text(

@@ -114,8 +114,11 @@ class Lenses(InFolder):
             self.assertEqual(lenses.in_file(self.write("lens.txt", wrong)), [])
 
     def test_a_lens_states_its_focal_length(self):
-        self.assertEqual(lenses.given_as("18.5mm:a/b.txt"), (18.5, "a/b.txt"))
-        self.assertEqual(lenses.given_as("18mm.txt"), (None, "18mm.txt"))
+        for text, given in (("18.5mm:a/b.txt", lenses.Given("a/b.txt", focal=18.5)),
+                            ("left/:a/b.txt", lenses.Given("a/b.txt", prefix="left/")),
+                            ("18mm.txt", lenses.Given("18mm.txt"))):
+            self.assertEqual(lenses.given_as(text), given)
+            self.assertEqual(given.with_file(given.file), text)
 
 
 class CamerasCase(InFolder):
@@ -198,6 +201,26 @@ class Groups(CamerasCase):
         self.assertIn("state the focal length for which each was calibrated", self.failure(photos[:2], TEXT, longer))
         self.given(photos[:2], f"18mm:{TEXT}", f"24mm:{longer}")
         self.assertIn("warning: no photograph belongs to the lens of", self.left_out[0])
+
+    def test_names_tell_cameras_of_one_kind_apart(self):
+        for name in ("left/0", "left/1", "right/0", "right/1", "right/2"):
+            self.write(f"images/{name}.jpg", jpeg(480, 360, 18, "A"))
+        left, right = self.write("left.txt", TEXT), self.write("right.txt", TEXT.replace("1 OPENCV", "2 OPENCV"))
+        ports = {name: {"type": "flat", "normal": [0, 0, 1]} for name in ("a", "b")}
+        housing = self.write("housing.json", json.dumps({"version": 1, "ports": ports, "cameras": {"1": "a", "2": "b"}}))
+        given = options_of(images=str(self.folder / "images"), lenses=[f"left/:{left}", f"right/:{right}"],
+                           lens=str(left), housing=str(housing))
+        images = photographs.found_in(given.images).images
+        given.cameras, left_out = cameras.of(given, images)
+        self.assertEqual([(one.names[0], len(one.names), one.lens.number, one.words) for one in given.cameras],
+                         [("right/0.jpg", 3, 2, ""), ("left/0.jpg", 2, 1, "")])
+        self.assertEqual(left_out, [])
+        self.assertEqual(cameras.housing_of(housing, given.cameras, 1)["cameras"], {"1": "b", "2": "a"})
+        given.lenses = [f"left/:{left}", str(right)]  # a lens without a prefix is for all other photographs
+        self.assertEqual([one.lens.number for one in cameras.of(given, images)[0]], [2, 1])
+        given.lenses = [f"left/:{left}"]
+        with self.assertRaisesRegex(Failure, "has no lens for 3 of 5 photographs"):
+            cameras.of(given, images)
 
     def test_lenses_that_cannot_be_read_are_for_alike_photographs(self):
         self.assertEqual(self.given([(480, 360)] * 2, "").cameras, [])

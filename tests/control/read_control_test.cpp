@@ -2,6 +2,9 @@
 // Hand-made files of each format, whose pixels and places are known.
 #include "control/read_control.h"
 
+#include <cmath>
+#include <numbers>
+
 #include "control/control_fixture.h"
 
 namespace axial::control {
@@ -287,6 +290,37 @@ TEST_F(ReadControl, SeveralFilesAreOneControl) {
               HasSubstr("c.csv:2: the points are in the system ''"));
   EXPECT_THAT(test::error_of([&] { append(control, read("c.txt", "1,2,0.6\n")); }),
               HasSubstr("c.txt:1: target 1-target 2 has other numbers than at"));
+}
+
+// Transverse Mercator: 0.9996 on the central meridian, and 1 + (x / R)^2 / 2 times as much at x
+// from it, where R is the mean radius of curvature. Spherical Mercator stretches the ellipsoid by
+// sqrt(1 - e^2 sin^2) / cos across the meridian and by (1 - e^2 sin^2)^1.5 / ((1 - e^2) cos) along
+// it.
+TEST_F(ReadControl, TheScaleOfAMapIsThatOfItsProjection) {
+  const auto scale = [](const std::string& crs, double x, double y) {
+    Control control;
+    control.crs = crs;
+    for (const double shift : {-1.0, 1.0}) {
+      ControlPoint point;
+      point.metres = {x + shift, y, 0};
+      point.sigma.setConstant(0.01);
+      control.points.push_back(point);
+    }
+    set_map_scale(control);
+    return control;
+  };
+  EXPECT_NEAR(scale("EPSG:32617", 500000, 2500000).map_scale, 0.9996, 1e-7);
+  EXPECT_NEAR(scale("EPSG:32717", 700000, 7500000).map_scale,
+              0.9996 * (1 + std::pow(200000 / 0.9996 / 6.363e6, 2) / 2), 2e-6);
+  EXPECT_THAT(scale("EPSG:32617", 500000, 2500000).notes, ElementsAre(HasSubstr("0.99960 m")));
+  const double sine = std::sin(std::numbers::pi / 4), e2 = 0.00669438;
+  const double w2 = 1 - e2 * sine * sine;
+  // The place of 45 degrees: y = R ln(tan(67.5 degrees)).
+  EXPECT_NEAR(scale("EPSG:3857", 0, 6378137 * std::asinh(1)).map_scale,
+              (std::sqrt(w2) + std::pow(w2, 1.5) / (1 - e2)) / 2 / sine, 1e-5);
+  EXPECT_EQ(scale("", 5, 7).map_scale, 1);
+  EXPECT_EQ(scale("LOCAL_CS[\"reef\",UNIT[\"metre\",1]]", 5, 7).map_scale, 1);
+  EXPECT_THAT(scale("", 5, 7).notes, IsEmpty());
 }
 
 }  // namespace

@@ -99,6 +99,20 @@ TEST_F(ControlProgram, ABarGivesTheScaleAndAnotherChecksIt) {
   EXPECT_LE(model.points.size(), truth_.points.size());  // targets are no points of COLMAP's
 }
 
+// On the central meridian of a UTM zone, one metre on the ground is 0.9996 m on the map.
+TEST_F(ControlProgram, LengthsOfBarsAreOnTheGround) {
+  write_points();
+  write_bars(1 / 0.9996);
+  json points = json::parse(read_file(folder_ / "control.json"));
+  points["crs"] = "EPSG:32617";
+  write_atomically(folder_ / "control.json", points.dump());
+  const json report =
+      refined("--control control.json --bars bars.csv --checks \"target 3-target 4\"");
+  EXPECT_THAT(said_, HasSubstr("one metre on the ground is 0.99960 m on the map of EPSG:32617"));
+  for (const json& bar : report["control"]["bars"])
+    EXPECT_NEAR(bar["length_m"]["residual"].get<double>(), 0, 2e-5);  // 0.0002 m without the map
+}
+
 TEST_F(ControlProgram, ControlPointsPlaceTheModel) {
   write_points();
   const json report = refined("--control control.json");

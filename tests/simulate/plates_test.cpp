@@ -91,6 +91,43 @@ TEST_F(Plates, RaysOfTheImageOfAPlateMeetItsCentre) {
   EXPECT_GT(seen, 20);
 }
 
+TEST_F(Plates, PlacesOnAPlateAreOnTheRaysOfTheirPixels) {
+  const std::vector<Eigen::Vector2d> places{{0.5, -0.25}, {-1, 1}};
+  int seen = 0;
+  for (const View& view : preset_.views)
+    for (const Plate& plate : plates_)
+      if (const auto pixels = pixels_of(plate, places, preset_.lens, &preset_.port, view))
+        for (std::size_t i = 0; i < places.size(); ++i, ++seen) {
+          const SceneRay ray = to_world(
+              view, *trace_pixel(preset_.lens, &preset_.port, (*pixels)[i].x(), (*pixels)[i].y()));
+          const Eigen::Vector3d in_plate(places[i].x() * plate.side / 2,
+                                         places[i].y() * plate.side / 2, 0);
+          const Eigen::Vector3d place = plate.centre + plate.axes * in_plate;
+          EXPECT_LT((place - ray.start).cross(ray.direction).norm(), 1e-9);
+        }
+  EXPECT_GT(seen, 20);
+}
+
+TEST_F(Plates, ACoveredPartHidesAPlate) {
+  const Plate& plate = plates_[0];
+  Plate stone = plate;  // covers a sixteenth of the side, away from the centre and the corners
+  stone.centre += plate.side * (0.25 * plate.axes.col(0) - 0.02 * plate.axes.col(2));
+  stone.side = plate.side / 4;
+  int seen = 0;
+  for (const bool covered : {false, true}) {
+    TriangleMesh mesh = ground_;
+    append(mesh, plate_mesh(std::span(&plate, 1)));
+    if (covered) append(mesh, plate_mesh(std::span(&stone, 1)));
+    const RayScene scene(mesh);
+    for (const View& view : preset_.views)
+      if (image_of(plate, scene, preset_.lens, &preset_.port, view)) {
+        ++seen;
+        EXPECT_FALSE(covered);
+      }
+  }
+  EXPECT_GT(seen, 0);
+}
+
 TEST_F(Plates, TheShaderShowsThePatternOnTheUpperSideOnly) {
   const std::vector<Plate> one{{Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(1, -1, -1).asDiagonal(),
                                 0.2, [](double x, double y) { return x > 0 && y > 0; }}};

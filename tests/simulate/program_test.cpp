@@ -55,6 +55,24 @@ TEST_F(SimulateUnderwater, PhotographsThroughADome) {
   refuses("centre is 0.07", kSmall + "--dome-radius 0.06 --dome-x 0.07 -o b");
 }
 
+TEST_F(SimulateUnderwater, PhotographsOfTwoCameras) {
+  const Outcome outcome =
+      run(kSmall + "--rig-base 0.1 --rig-port-distance 0.03 -o a --medium water --truth 0");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const io::Housing housing = io::read_housing(folder_ / "a" / "housing.json");
+  const io::ColmapModel model = io::read_colmap_model(folder_ / "a" / "sparse");
+  ASSERT_EQ(model.cameras.size(), 2u);
+  ASSERT_EQ(model.images.size(), 6u);
+  for (const io::ColmapImage& image : model.images) {
+    EXPECT_TRUE(fs::exists(folder_ / "a" / "water" / image.name)) << image.name;
+    const std::string side = image.name.substr(0, image.name.find('/'));
+    EXPECT_EQ(housing.port_of(image.name, image.camera), side);
+    const auto& port = std::get<refractive::FlatPort<double>>(housing.ports.at(side));
+    EXPECT_EQ(port.distance == 0.03, side == "right");
+  }
+  refuses("--rig-delay needs --rig-base", kSmall + "--rig-delay 0.1 -o b");
+}
+
 TEST_F(SimulateUnderwater, PhotographsThroughTheSurface) {
   const Outcome outcome = run(kSmall + "--water-level 0.5 --n-water 1.34 -o a --medium water");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;

@@ -30,11 +30,12 @@ class Group:
     size: tuple          # (width, height) [px]
     camera: str          # of the Exif data
     focal: float | None  # of the Exif data [mm]
+    prefix: str          # of --lens, with which the names begin
     names: tuple
 
     def is_told_less_than(self, other):
         """Whether these photographs may belong to the other group, and state less."""
-        return (self.size == other.size and self.camera in ("", other.camera)
+        return (self.size == other.size and self.prefix == other.prefix and self.camera in ("", other.camera)
                 and self.focal in (None, other.focal) and self != other)
 
 
@@ -64,16 +65,17 @@ def nominal(focals):
     return {**found, None: None}
 
 
-def groups_of(images):
+def groups_of(images, prefixes=()):
     """The Groups of photographs, the largest first. `images`: Image by name (photographs.py). Photographs of
     unknown size count as those of the usual size, and photographs that state less than others of their size
-    belong to those if these are of one group."""
+    belong to those if these are of one group. A name belongs to the longest of `prefixes` with which it begins."""
     usual = collections.Counter(image.size for image in images.values() if image.size).most_common(1)
     focals = nominal({image.exif.focal for image in images.values() if image.exif.focal})
     found = collections.defaultdict(list)
     for name, image in images.items():
         size = image.size or (usual[0][0] if usual else None)
-        found[size, image.exif.camera, focals[image.exif.focal]].append(name)
+        prefix = max((one for one in prefixes if name.startswith(one)), key=len, default="")
+        found[size, image.exif.camera, focals[image.exif.focal], prefix].append(name)
     groups = [Group(*key, tuple(names)) for key, names in found.items()]
     joined = collections.defaultdict(list)
     for group in groups:
@@ -89,7 +91,8 @@ def same_focal(a, b):
 
 def lens_of(group, groups, found):
     """The lens of `found` for a group; None if no lens has its size or ratio of sides. Fails if two have."""
-    fitting = [lens for lens in found if lenses.difference(lens, group.size) is not None
+    groups = [other for other in groups if other.prefix == group.prefix]
+    fitting = [lens for lens in found if lens.prefix == group.prefix and lenses.difference(lens, group.size) is not None
                and (lens.stated_focal is None or group.focal and same_focal(lens.stated_focal, group.focal))]
     fitting = [lens for lens in fitting if lens.stated_focal] or fitting
     least = min((lenses.difference(lens, group.size) for lens in fitting), default=None)
@@ -105,7 +108,7 @@ def lens_of(group, groups, found):
         return sorted(fitting, key=lambda lens: lens.parameters[0])[focals.index(group.focal)]
     raise Failure(f"--lens: {fitting[0].in_words()} and {fitting[1].in_words()} are both for photographs of "
                   f"{group.size[0]} x {group.size[1]} pixels; state the focal length for which each was calibrated, "
-                  "as in --lens 18mm:lens.txt")
+                  "as in --lens 18mm:lens.txt, or how the names of its photographs begin, as in --lens left/:lens.txt")
 
 
 def owner_of(lens, groups):
@@ -132,8 +135,8 @@ def camera_of(group, lens, owner):
 
 def lenses_of(given):
     """The lenses in the files of --lens."""
-    return [dataclasses.replace(lens, stated_focal=focal)
-            for focal, file in map(lenses.given_as, given.lenses) for lens in lenses.in_file(file)]
+    return [dataclasses.replace(lens, stated_focal=one.focal, prefix=one.prefix)
+            for one in map(lenses.given_as, given.lenses) for lens in lenses.in_file(one.file)]
 
 
 def of(given, images):
@@ -141,7 +144,8 @@ def of(given, images):
     Camera if all photographs have the only lens of --lens as it is."""
     if not any(image.size for image in images.values()):
         return [], []
-    groups, found = groups_of(images), lenses_of(given)
+    found = lenses_of(given)
+    groups = groups_of(images, {lens.prefix for lens in found})
     if not found:
         if len(groups) > 1:
             refuse_other_sizes(given.images, images)

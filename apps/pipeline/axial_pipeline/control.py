@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Coded targets, bars and control points, which RefinePoses takes."""
+"""Coded targets, bars, control points and rigs, which RefinePoses takes."""
 
 from . import files
 from .failure import Failure
@@ -8,7 +8,7 @@ from .programs import require, words_of
 FIND = "find"            # the value of --targets for which FindTargets runs
 FOUND = "targets.json"   # its result
 PLACES = "target_places.json"  # of RefinePoses
-FILES = ("targets", "bars", "control")
+FILES = ("targets", "bars", "control", "rig")
 
 
 def add_options(parser):
@@ -16,6 +16,7 @@ def add_options(parser):
                         "RefinePoses (docs/targets.md)")
     parser.add_argument("--bars", default="", help="known distances between targets, as for RefinePoses")
     parser.add_argument("--control", default="", help="known coordinates of targets, as for RefinePoses")
+    parser.add_argument("--rig", default="", help="cameras on one bar, as for RefinePoses (docs/rigs.md)")
     parser.add_argument("--checks", default="", help="targets and bars that do not enter the adjustment, as for "
                         "RefinePoses")
 
@@ -51,7 +52,7 @@ def require_found(file, images):
 def files_of(given, out):
     """The files that RefinePoses reads."""
     found = out / FOUND if finds(given) else given.targets
-    return [file for file in (found, given.bars, given.control) if file]
+    return [file for file in (found, given.bars, given.control, given.rig) if file]
 
 
 def lines_of(found):
@@ -82,5 +83,5 @@ def rows_of(found):
 def words(given, out):
     """The options of RefinePoses."""
     options = {"--targets": out / FOUND if finds(given) else given.targets, "--bars": given.bars,
-               "--control": given.control, "--checks": given.checks}
+               "--control": given.control, "--checks": given.checks, "--rig": given.rig}
     return [word for option, value in options.items() if value for word in (option, value)]

@@ -46,7 +46,7 @@ def check_lens_and_housing(given):
     """Checks the contents of --lens and --housing. Returns lines about the lens behind the port."""
     with tempfile.TemporaryDirectory(prefix=PREFIX) as folder:
         return [line for text in given.lenses for line in
-                lens_behind_port(given, lenses.given_as(text)[1], given.housing, pathlib.Path(folder))]
+                lens_behind_port(given, lenses.given_as(text).file, given.housing, pathlib.Path(folder))]
 
 
 def check_cameras(given):

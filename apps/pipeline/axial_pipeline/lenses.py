@@ -6,6 +6,7 @@ import dataclasses
 import pathlib
 import re
 import struct
+import typing
 
 from .failure import Failure
 
@@ -32,6 +33,7 @@ class Lens:
     focal_sigma: float | None = None  # standard deviation of the focal lengths, relative
     file: str = ""
     stated_focal: float | None = None  # the Exif focal length for which the user gave it [mm]
+    prefix: str = ""  # of the names of the photographs for which the user gave it
 
     def in_words(self):
         return f"{self.file}, camera {self.number}"
@@ -166,11 +168,22 @@ def text_of(lenses):
     return "\n".join([*sigmas, *(line_of(number, lens) for number, lens in enumerate(lenses, 1)), ""])
 
 
+class Given(typing.NamedTuple):
+    """A value of --lens."""
+    file: str
+    focal: float | None = None  # the Exif focal length for which it is given [mm]
+    prefix: str = ""            # of the names of the photographs for which it is given
+
+    def with_file(self, file):
+        """The value with another path."""
+        return f"{self.focal:g}mm:{file}" if self.focal else f"{self.prefix}:{file}" if self.prefix else str(file)
+
+
 def given_as(text):
-    """The Exif focal length [mm], or None, and the file in a value of --lens, such as 18mm:lens.txt."""
-    stated = re.fullmatch(r"(\d+(?:\.\d+)?)\s*mm:(.+)", text, re.DOTALL)
-    if not stated or pathlib.Path(text).exists():
-        return None, text
-    if float(stated[1]) == 0:
+    """The Given of a value of --lens: lens.txt, 18mm:lens.txt, or left/:lens.txt."""
+    focal, prefix = re.fullmatch(r"(\d+(?:\.\d+)?)\s*mm:(.+)", text, re.DOTALL), re.fullmatch(r"([^:]+):(.+)", text)
+    if pathlib.Path(text).exists() or not (focal or prefix):
+        return Given(text)
+    if focal and float(focal[1]) == 0:
         raise Failure(f"--lens {text}: the focal length must be positive")
-    return float(stated[1]), stated[2]
+    return Given(focal[2], focal=float(focal[1])) if focal else Given(prefix[2], prefix=prefix[1])

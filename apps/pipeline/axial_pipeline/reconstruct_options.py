@@ -35,7 +35,7 @@ def options(script_folder, description, words=None):
                         help="the lens as calibrated in air: a COLMAP cameras.txt, or Calibmar's "
                         "calibration.yaml. Photographs of several cameras, sizes or focal lengths: several lenses in a "
                         "file, or this option several times, also as 18mm:FILE for photographs whose Exif data state "
-                        "this focal length (docs/photographs.md)")
+                        "this focal length, or left/:FILE for photographs whose names begin so (docs/photographs.md)")
     parser.add_argument("--housing", required=True, help="the port (docs/formats.md), or Calibmar's "
                         "calibration.yaml; or flat, dome or unknown: usual numbers, which the photographs correct")
     parser.add_argument("-o", "--output", required=True, help="folder for all output files")
@@ -218,9 +218,9 @@ def is_own_mesh(mesh, out):
 def check_lens_files(given):
     """Makes the paths in --lens absolute. `given.lens` is the first file."""
     for number, text in enumerate(given.lenses):
-        focal, file = lenses.given_as(text)
-        path = files.existing("--lens", text, file)
-        given.lenses[number] = path if focal is None else f"{focal:g}mm:{path}"
+        one = lenses.given_as(text)
+        path = files.existing("--lens", text, one.file)
+        given.lenses[number] = one.with_file(path)
         given.lens = given.lens if number else path
 
 

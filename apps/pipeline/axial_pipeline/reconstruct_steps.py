@@ -34,7 +34,7 @@ class Run:
         self.scene, self.refined = out / "scene_dense.mvs", out / "refined"
         # COLMAP's masks
         self.masks = pathlib.Path(given.joint or out) / masks.FOLDER if given.masks else None
-        self.lens_files = [lenses.given_as(text)[1] for text in given.lenses]
+        self.lens_files = [lenses.given_as(text).file for text in given.lenses]
 
     def own(self, name):
         """The words of the option for the program of the step `name`."""

@@ -24,6 +24,10 @@ class CoordinateSystem {
   bool is_local() const;
   bool is_geographic() const;  // its coordinates are longitude and latitude [degrees]
   bool is_metric() const;      // projected or local, with metres as unit
+  // The length on the map of one metre on the ellipsoid at `place` (x and y): the mean of the
+  // lengths along x and y of the map. 1 for a system that is not projected. Not finite if no place
+  // on the ellipsoid is there.
+  double map_scale(const Eigen::Vector2d& place) const;
 
  private:
   CoordinateSystem() = default;
