@@ -63,7 +63,7 @@ def measure(seed, late, base=BASE):
     if outcome.code:
         return f"| {seed} | {late} | exit code {outcome.code}: {outcome.said[-300:]} |", False
     error = scale_of(folder / "out" / "refined" / "sparse", data / "sparse") - 1
-    timing = outcome.report["rigs"][0].get("timing") or {}
+    timing = outcome.report["rigs"][0]["cameras"][0].get("timing") or {}
     told = any("later than" in line for line in outcome.warnings)
     good = abs(error) <= SCALE and told == late
     return (f"| {seed} | {1e3 * DELAY * late:.0f} ms | {outcome.registered} of {outcome.photographs} | "
