@@ -8,3 +8,7 @@ if(AXIAL_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${AXIAL_CCACHE})
   add_compile_options(-fpch-preprocess)
 endif()
+# Clang stores the time in a precompiled header, so that ccache would take it for another one.
+if(CMAKE_CXX_COMPILER_LAUNCHER MATCHES ccache AND CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+  add_compile_options("SHELL:-Xclang -fno-pch-timestamp")
+endif()

@@ -218,11 +218,14 @@ AddedControl add_control(const control::Control& control, pose::Bundle& bundle,
   for (const control::ControlPoint& point : control.points)
     if (auto known = known_place(point, labels, added.unused))
       (point.check ? added.checks.places : refine.adjust.places).push_back(*std::move(known));
+  // One place does not scale the model.
+  if (places_in_plan(refine.adjust.places).size() < 2) return added;
+  added.map_scale = control.map_scale;
   for (std::vector<pose::KnownDistance>* distances :
        {&refine.adjust.distances, &added.checks.distances})
     for (pose::KnownDistance& known : *distances) {
-      known.metres *= control.map_scale;
-      known.sigma *= control.map_scale;
+      known.metres *= added.map_scale;
+      known.sigma *= added.map_scale;
     }
   return added;
 }

@@ -42,6 +42,7 @@ struct ControlChecks {
 
 struct AddedControl {
   ControlChecks checks;
+  double map_scale = 1;  // Control::map_scale if control points scale the model
   // A line for each bar, point or target that cannot be used.
   std::vector<std::string> unused;
 };
@@ -49,8 +50,8 @@ struct AddedControl {
 // Adds the targets to the bundle, and bars and control points to `refine`: to `refine.adjust` those
 // that are used. A control point whose label is no target, but the name of an image, is a camera
 // centre: so depths of a gauge enter. Targets in photographs that the bundle does not have are not
-// used. All known distances, also those that `refine.adjust` has before, become lengths on the map
-// (Control::map_scale).
+// used. If two or more control points with x and y are used, all known distances, also those that
+// `refine.adjust` has before, become lengths on the map (AddedControl::map_scale).
 AddedControl add_control(const control::Control& control, pose::Bundle& bundle,
                          pose::RefineOptions& refine);
 

@@ -149,10 +149,10 @@ std::vector<std::string> control_warnings(const ControlResults& results) {
 }
 
 nlohmann::ordered_json control_json(const ControlResults& results) {
-  Json json{{"targets", results.targets},  {"observations", results.observations},
-            {"rms_px", results.rms},       {"crs", results.crs},
-            {"bars", Json::array()},       {"points", Json::array()},
-            {"left_out", results.left_out}};
+  Json json{{"targets", results.targets},   {"observations", results.observations},
+            {"rms_px", results.rms},        {"crs", results.crs},
+            {"bars", Json::array()},        {"points", Json::array()},
+            {"left_out", results.left_out}, {"map_scale", results.map_scale}};
   for (const BarResult& bar : results.bars)
     json["bars"].push_back({{"name", bar.name},
                             {"use", use_of(bar.check)},

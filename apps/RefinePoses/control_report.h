@@ -31,6 +31,7 @@ struct ControlResults {
   std::size_t targets = 0, observations = 0;  // that the adjustment used
   double rms = 0;                             // reprojection error of the targets [px]
   std::string crs;                            // of the points: "EPSG:32617"; empty: not stated
+  double map_scale = 1;                       // AddedControl::map_scale: of the lengths of bars
   std::vector<BarResult> bars;
   std::vector<PointResult> points;
   std::vector<std::string> left_out;  // lines about what was not used or is doubtful

@@ -10,8 +10,9 @@ namespace axial::apps {
 namespace {
 
 void check_effective_lens(const Options& options) {
-  for (const char* other : {"input-file", "output-folder", "scale-from", "refine", "database",
-                            "targets", "bars", "control", "rig"})
+  for (const char* other : {"input-file", "output-folder", "scale-from", "scale-sigma", "refine",
+                            "database", "targets", "images", "bars", "control", "checks", "epsg",
+                            "rig", "rig-poses", "rig-frames", "rig-times", "rig-interval"})
     if (given(options.parsed, other))
       fail("--effective-lens {}: contradicts --{}", options.effective_lens.string(), other);
   if (options.lens.empty()) fail("--lens is missing: the lens calibrated in air");

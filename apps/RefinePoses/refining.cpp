@@ -104,6 +104,7 @@ void Refining::set_known() {
     refined_.control = add_control(input_.control, refined_.after.bundle, options_.refine);
   adjust.poses_known = options_.poses == "known";
   refined_.after.bundle.rigs = read_rigs(options_.rigs, input_.model);
+  scale_stated(refined_.after.bundle.rigs, refined_.control.map_scale);
   pose::set_estimated_numbers(options_.refine_list, options_.sigmas, bundle(), adjust);
   options_.refine.keep_stated = options_.refine_list == "auto";
   refined_.frame = enter_local_frame(input_.frame, adjust, refined_.control.checks.places);
@@ -121,6 +122,11 @@ void Refining::tell_input() const {
   log_info("{}: {} images, {} points, {} observations", input_.folder.string(),
            input_.model.images.size(), input_.model.points.size(), bundle().observations.size());
   for (const std::string& line : input_lines(bundle().rigs)) log_info("{}", line);
+  if (const double scale = refined_.control.map_scale; scale != 1)
+    log_info(
+        "One metre is {:.5f} m on the map of the control points: known lengths are multiplied "
+        "by this",
+        scale);
   if (refined_.after.unseen > 0)
     log_warning("{} observations lie at pixels for which the lens in air has no ray",
                 refined_.after.unseen);

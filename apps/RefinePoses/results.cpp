@@ -46,6 +46,7 @@ void write_control(const Options& options, const Input& input, const Refined& re
   results.control = control_results(bundle, results.options, refined.frame, refined.control.checks,
                                     std::move(left_out));
   results.control->crs = input.control.crs;
+  results.control->map_scale = refined.control.map_scale;
   control::TargetPlaces places =
       target_places(bundle, results.options, options.refine.targets, refined.frame);
   places.crs = input.control.crs;

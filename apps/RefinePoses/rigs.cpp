@@ -214,6 +214,16 @@ std::vector<pose::Rig> read_rigs(const RigInput& rigs, const io::ColmapModel& mo
   return make_rigs(io::read_rigs(rigs.file), model.images, options, rigs.file.string());
 }
 
+void scale_stated(std::vector<pose::Rig>& rigs, double map_scale) {
+  for (pose::Rig& rig : rigs)
+    for (RigCamera& camera : rig.cameras) {
+      if (!camera.is_metric()) continue;
+      camera.stated.centre *= map_scale;
+      camera.now.centre *= map_scale;
+      camera.sigma_translation *= map_scale;
+    }
+}
+
 std::vector<std::string> input_lines(const std::vector<pose::Rig>& rigs) {
   std::vector<std::string> lines;
   for (const pose::Rig& rig : rigs) {

@@ -35,6 +35,9 @@ std::vector<std::filesystem::path> files_of(const RigInput& rigs);
 // io::read_photograph_times() and pose::make_rigs().
 std::vector<pose::Rig> read_rigs(const RigInput& rigs, const io::ColmapModel& model);
 
+// Multiplies stated poses and their standard deviations by the length on a map of one metre.
+void scale_stated(std::vector<pose::Rig>& rigs, double map_scale);
+
 // Returns a line for each rig: its cameras, and how many of its frames have several photographs.
 std::vector<std::string> input_lines(const std::vector<pose::Rig>& rigs);
 

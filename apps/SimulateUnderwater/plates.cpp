@@ -101,7 +101,10 @@ PlatesOnGround plates_on(const simulate::TriangleMesh& ground, const simulate::P
     fail("--targets {} and {} bars need {} targets, but {} has {}", a.targets, a.bars.size(), count,
          family.name, numbers.last + 1 - numbers.first);
   const simulate::RayScene scene(ground);
-  result.plates = simulate::lay_plates(scene, preset.lens, preset.views,
+  // The second camera of a rig does not move the plates.
+  std::vector<simulate::View> views = preset.views;
+  std::erase_if(views, [](const simulate::View& view) { return view.camera == 1; });
+  result.plates = simulate::lay_plates(scene, preset.lens, views,
                                        {single, a.bars, a.target_side, a.preset.seed});
   for (std::size_t i = 0; i < count; ++i) {
     const targets::Pattern pattern(family, numbers.first + i);

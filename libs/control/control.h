@@ -61,7 +61,7 @@ struct Control {
   std::vector<ControlPoint> points;
   std::vector<Bar> bars;
   std::string crs;                 // of `points`: "EPSG:32617"; empty: not stated, metres
-  double map_scale = 1;            // the length on the map of `crs` of one metre on the ground
+  double map_scale = 1;            // the length on the map of `crs` of one metre on the ellipsoid
   std::vector<std::string> notes;  // how files were understood, a line for each decision
 };
 

@@ -52,18 +52,18 @@ std::string wkt_of(OGRSpatialReferenceH system) {
   return wkt;
 }
 
-// The length of a short way between two places, of which longitude and latitude are given
-// [degrees], with the radii of curvature along the meridian and across it.
+// The length of a short way between two places, of which longitude and latitude are given [rad],
+// with the radii of curvature along the meridian and across it.
 double length_on_ellipsoid(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double semi_major,
                            double inverse_flattening) {
-  constexpr double kRadians = std::numbers::pi / 180;
   const double flattening = inverse_flattening > 0 ? 1 / inverse_flattening : 0;
   const double squared_eccentricity = flattening * (2 - flattening);
-  const double latitude = (a.y() + b.y()) / 2 * kRadians;
+  const double latitude = (a.y() + b.y()) / 2;
   const double w = std::sqrt(1 - squared_eccentricity * std::pow(std::sin(latitude), 2));
   const double along = semi_major * (1 - squared_eccentricity) / (w * w * w);
   const double across = semi_major / w * std::cos(latitude);
-  return std::hypot(along * (b.y() - a.y()), across * (b.x() - a.x())) * kRadians;
+  const double east = std::remainder(b.x() - a.x(), 2 * std::numbers::pi);
+  return std::hypot(along * (b.y() - a.y()), across * east);
 }
 
 using SystemPtr = std::unique_ptr<std::remove_pointer_t<OGRSpatialReferenceH>,
@@ -131,17 +131,19 @@ bool CoordinateSystem::is_metric() const {
 double CoordinateSystem::map_scale(const Eigen::Vector2d& place) const {
   auto* const system = static_cast<OGRSpatialReferenceH>(system_.get());
   if (!OSRIsProjected(system)) return 1;
-  CoordinateSystem degrees;
-  degrees.system_ = {OSRCloneGeogCS(system), [](void* one) {
-                       OSRDestroySpatialReference(static_cast<OGRSpatialReferenceH>(one));
-                     }};
-  OSRSetAxisMappingStrategy(static_cast<OGRSpatialReferenceH>(degrees.system_.get()),
-                            OAMS_TRADITIONAL_GIS_ORDER);
+  CoordinateSystem geographic;
+  geographic.system_ = {OSRCloneGeogCS(system), [](void* one) {
+                          OSRDestroySpatialReference(static_cast<OGRSpatialReferenceH>(one));
+                        }};
+  auto* const base = static_cast<OGRSpatialReferenceH>(geographic.system_.get());
+  OSRSetAxisMappingStrategy(base, OAMS_TRADITIONAL_GIS_ORDER);
   constexpr double kStep = 100;  // on the map, to either side
   const std::array<Eigen::Vector2d, 4> around{
       place - Eigen::Vector2d(kStep, 0), place + Eigen::Vector2d(kStep, 0),
       place - Eigen::Vector2d(0, kStep), place + Eigen::Vector2d(0, kStep)};
-  const std::vector<Eigen::Vector2d> there = transformed(around, *this, degrees);
+  std::vector<Eigen::Vector2d> there = transformed(around, *this, geographic);
+  const double unit = OSRGetAngularUnits(base, nullptr);  // degree or grad [rad]
+  for (Eigen::Vector2d& one : there) one *= unit;
   const double radius = OSRGetSemiMajor(system, nullptr);
   const double flattening = OSRGetInvFlattening(system, nullptr);
   return kStep * (1 / length_on_ellipsoid(there[0], there[1], radius, flattening) +

@@ -109,15 +109,11 @@ void set_map_scale(Control& control) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int count = 0;
   for (const ControlPoint& point : control.points)
-    if (!point.check && has_plane(point)) sum += point.metres.head<2>(), ++count;
+    if (has_plane(point)) sum += point.metres.head<2>(), ++count;
   const auto system = control.crs.empty() ? std::nullopt : CoordinateSystem::from_text(control.crs);
-  if (count < 2 || !system) return;
+  if (count == 0 || !system) return;
   const double scale = system->map_scale(sum / count);
-  if (!std::isfinite(scale) || std::abs(scale - 1) < kMatters) return;
-  control.map_scale = scale;
-  control.notes.push_back(fmt::format(
-      "one metre on the ground is {:.5f} m on the map of {}: known lengths are multiplied by this",
-      scale, control.crs.starts_with("EPSG:") ? control.crs : "the control points"));
+  if (std::isfinite(scale) && std::abs(scale - 1) > kMatters) control.map_scale = scale;
 }
 
 Control read_control(const std::filesystem::path& file, const ControlReading& options) {

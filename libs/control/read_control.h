@@ -50,9 +50,9 @@ Control read_control(const std::filesystem::path& file, const ControlReading& op
 // another system. Points and bars that both have are kept once.
 void append(Control& control, Control more);
 
-// Sets Control::map_scale, at the mean of the points that are no checks and of which x and y are
-// known. It is 1 if fewer than two are, which do not scale the model, and if their system is not
-// stated or not projected. A note states it if it differs from 1 by more than 1e-5.
+// Sets Control::map_scale, at the mean of the points of which x and y are known. It is 1 if there
+// are none, if their system is not stated or not projected, and if it differs from 1 by at most
+// 1e-5.
 void set_map_scale(Control& control);
 
 }  // namespace axial::control

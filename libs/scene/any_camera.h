@@ -27,22 +27,19 @@ class AnyCamera {
   // pixel to `jacobian`. project() returns the projection of X [camera frame, m], and writes
   // d(pixel)/dX [px/m] to `jacobian` and the origin of the ray through X [camera frame, m] to
   // `origin` unless they are null.
-  refractive::AxialRay<T> ray(const refractive::Vector2<T>& pixel) const {
-    return std::visit([&](const auto& camera) { return camera.ray(pixel); }, camera_);
-  }
+  // They are compiled once, for float and double.
+  refractive::AxialRay<T> ray(const refractive::Vector2<T>& pixel) const;
   refractive::AxialRay<T> ray(const refractive::Vector2<T>& pixel,
-                              refractive::AxialRayJacobian<T>& jacobian) const {
-    return std::visit([&](const auto& camera) { return camera.ray(pixel, jacobian); }, camera_);
-  }
+                              refractive::AxialRayJacobian<T>& jacobian) const;
   refractive::Projection<T> project(const refractive::Vector3<T>& X,
                                     refractive::Matrix23<T>* jacobian = nullptr,
-                                    refractive::Vector3<T>* origin = nullptr) const {
-    return std::visit([&](const auto& camera) { return camera.project(X, jacobian, origin); },
-                      camera_);
-  }
+                                    refractive::Vector3<T>* origin = nullptr) const;
 
  private:
   CameraVariant<T> camera_;
 };
+
+extern template class AnyCamera<float>;
+extern template class AnyCamera<double>;
 
 }  // namespace axial

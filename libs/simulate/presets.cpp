@@ -218,6 +218,8 @@ Preset make_preset(const PresetOptions& options) {
         "transect or amphora, or one of them with haze: NAME-hazy",
         options.name);
   found->make(preset, options.seed, options.views > 0 ? options.views : found->views);
+  if (options.overlap != PresetOptions{}.overlap && found->make != make_transect)
+    fail("preset '{}' has an overlap of its own: only that of transect can be set", options.name);
   if (options.changed) {
     if (found->make != make_reef)
       fail("preset '{}' has no second survey after a change: only reef has one", options.name);

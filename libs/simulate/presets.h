@@ -75,8 +75,8 @@ struct Preset {
 // "NAME-hazy" is the preset NAME in haze that leaves a seventh of the contrast. Throws an Error for
 // another name, for `changed` with another preset than "reef" and for a reef without a boulder that
 // can be moved (change_survey()), for a number of views outside [0, 100000], for a scale, relief or
-// coarseness outside [0.01, 100], for an overlap outside [0, 0.95], and for a width, height or
-// field of view that make_lens() refuses.
+// coarseness outside [0.01, 100], for an overlap outside [0, 0.95] or another one with another
+// preset than "transect", and for a width, height or field of view that make_lens() refuses.
 Preset make_preset(const PresetOptions& options);
 
 // The port of `view` in its camera frame: the preset's water surface if Preset::water_level is set,

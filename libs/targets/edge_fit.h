@@ -21,11 +21,12 @@
 
 namespace axial::targets {
 
-// An outline with `kShape` numbers, and the step of brightness across it.
+// An outline with `kShape` numbers, of which the first two are its place [px], and the step of
+// brightness across it.
 template <int kShape>
 struct EdgeFit {
   Eigen::Matrix<double, kShape, 1> shape;
-  // From the residuals of the pixels, which may be alike in neighbouring pixels.
+  // From the residuals of the pixels. It allows for errors that neighbouring pixels share.
   Eigen::Matrix<double, kShape, kShape> covariance;
   double outside = 0, inside = 0;  // brightness
   double blur = 1;                 // standard deviation of the blur [px]
@@ -111,9 +112,9 @@ inline double noise_of(const Eigen::VectorXd& errors) {
          upper_median(std::vector<double>(sizes.data(), sizes.data() + sizes.size()));
 }
 
-// The covariance of the numbers of a fit: that of independent errors of this size, or that of
-// errors that are alike in blocks of pixels, if it is larger for the first two numbers. Nothing if
-// the pixels do not determine the numbers.
+// The covariance of the numbers of a fit: that of independent errors with the standard deviation
+// `noise`, or that of errors that blocks of pixels share, if the latter is larger for the place,
+// the first two numbers. Nothing if the pixels do not determine the numbers.
 template <int kCount>
 std::optional<Eigen::Matrix<double, kCount, kCount>> covariance_of(
     std::span<const cv::Point> pixels, Eigen::Matrix<double, Eigen::Dynamic, kCount> jacobian,
@@ -131,7 +132,8 @@ std::optional<Eigen::Matrix<double, kCount, kCount>> covariance_of(
   const Square independent = noise * noise * count / (count - kCount) * units * normal.solve(units);
   const Eigen::Matrix<double, kCount, Eigen::Dynamic> by_block =
       units * normal.solve(gradients_of_blocks<kCount>(pixels, jacobian, errors));
-  // The fit takes up a part of the errors of the blocks.
+  // The fit takes up as many errors of blocks as it has numbers. Of few blocks it would leave none;
+  // the limit keeps the correction of the variance below a quarter.
   const double blocks = static_cast<double>(by_block.cols());
   const Square alike =
       by_block * by_block.transpose() * (blocks / std::max(0.8 * blocks, blocks - kCount));

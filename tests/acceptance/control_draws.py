@@ -93,8 +93,14 @@ def scale_of(model, truth):
             / sum(math.dist(true[a], true[b]) for a, b in pairs))
 
 
-def bars_of(draw):
-    lines = [f"target {a},target {b},{BAR + draw.gauss(0, BAR_SIGMA):.6f},{BAR_SIGMA}" for a, b in USED]
+def error_of_check(report):
+    """The error of the check bar [mm]; NaN if it was not found."""
+    check = [bar for bar in report["control"]["bars"] if bar["use"] == "check"]
+    return 1e3 * check[0]["length_m"]["residual"] if check else math.nan
+
+
+def bars_of(draw, sigma=BAR_SIGMA):
+    lines = [f"target {a},target {b},{BAR + draw.gauss(0, sigma):.6f},{BAR_SIGMA}" for a, b in USED]
     return "\n".join([*lines, f"target {CHECK[0]},target {CHECK[1]},{BAR},{BAR_SIGMA},check"]) + "\n"
 
 
@@ -104,8 +110,17 @@ def measure_bars(data, out, folder, draw):
     (folder / "bars.csv").write_text(bars_of(draw))
     report, model = refined(brought, out, folder, "--bars", folder / "bars.csv")
     error = scale_of(model, data / "sparse") - 1
-    check = [bar for bar in report["control"]["bars"] if bar["use"] == "check"]
-    return error, error / report["scale_sigma"], 1e3 * check[0]["length_m"]["residual"] if check else math.nan
+    return error, error / report["scale_sigma"], error_of_check(report)
+
+
+def measure_pinhole(data, out, folder):
+    """The errors of scale and check bar [mm] of the same bars with COLMAP's own lens, without a port."""
+    brought = as_measured(data, folder)
+    brought.lens = out / "colmap" / "best" / "cameras.txt"
+    brought.housing.write_text(json.dumps({"version": 1, "default": "none", "ports": {}}))
+    (folder / "bars.csv").write_text(bars_of(random.Random("right"), 0))
+    report, model = refined(brought, out, folder, "--bars", folder / "bars.csv")
+    return scale_of(model, data / "sparse") - 1, error_of_check(report)
 
 
 def control_json(plates, checks, draw, moved=None):
@@ -157,11 +172,13 @@ def measure(seed, draws, base=BASE):
     row = " | ".join(f"{100 * value:.0f} %" for value in shares.values())
     missed = [name for name, value in shares.items() if value < (1 if name == "moved plate named" else 0.95)]
     largest = f"{100 * max(map(abs, errors)):.3f} % | {max(map(abs, checks)):.3f} mm"
-    return f"| {seed} | {draws} | {row} | {largest} |", missed
+    scale, check = measure_pinhole(data, out, work / "pinhole")
+    return f"| {seed} | {draws} | {row} | {largest} | {100 * scale:+.3f} %, {check:+.3f} mm |", missed
 
 
 HEAD = ("| seed | draws | scale within 0.05 % | within 3 sigma | check bar within 0.5 mm | check points within 1.5 | "
-        "moved plate named | largest error of scale | of the check bar |\n|---|---|---|---|---|---|---|---|---|")
+        "moved plate named | largest error of scale | of the check bar | pinhole: scale, check bar |\n"
+        "|---|---|---|---|---|---|---|---|---|---|")
 
 
 @point("two bars of 0.5 m: scale within 0.05 % and 3 sigma, check bar within 0.5 mm, in 95 % of 40 draws; four control "

@@ -4,7 +4,7 @@ degrees that are found, false labels, root mean squares of the differences from 
 errors of what a photograph shows (the centre of the dot's ellipse, the corners of a square): in pixels and in stated
 standard deviations.
 
-    python3 tests/acceptance/target_detection.py [--seeds 31 32] [--haze 0.6] [--work DIR]
+    python3 tests/acceptance/target_detection.py [--seeds 31 32] [--haze 0.6] [--base DIR]
 """
 
 import argparse
@@ -16,6 +16,7 @@ import sys
 
 sys.path[:0] = map(str, pathlib.Path(__file__).resolve().parents[:2])
 from points import BASE, point  # noqa: E402
+from support import runs  # noqa: E402
 from support.runs import BIN  # noqa: E402
 
 FRESH_SEEDS, FRESH_HAZY_SEEDS, HAZE = (56, 57, 58), (59, 60), 0.6  # not used while building
@@ -25,11 +26,12 @@ CENTRE, HAZY_CENTRE = 0.10, 0.25  # [px]
 SIGMA = 1.5                       # a factor
 
 
-def simulate(programs, folder, preset, family, seed, haze):
+def simulated(base, preset, family, seed, haze):
+    """The folder of the scene."""
     side = 0.15 if preset == "reef" else 0.04
-    subprocess.run([programs / "SimulateUnderwater", "--preset", preset, "--seed", str(seed), "-o", folder, "--targets",
-                    "12", "--bars", str(4 * side), "--target-side", str(side), "--target-family", family, "--medium",
-                    "water", "--truth", "0", "--haze", str(haze), "-v", "0"], check=True)
+    return runs.simulated(f"targets-{preset}-{family}-{seed}-{haze}", base, "--preset", preset, "--seed", seed,
+                          "--targets", 12, "--bars", 4 * side, "--target-side", side, "--target-family", family,
+                          "--medium", "water", "--truth", 0, "--haze", haze).data
 
 
 def find(programs, folder, family):
@@ -72,12 +74,10 @@ def root_mean(squares):
     return math.sqrt(sum(squares) / len(squares)) if squares else math.nan
 
 
-def measure(programs, work, preset, family, seed, haze):
+def measure(programs, base, preset, family, seed, haze):
     """Numbers of plates seen, found and falsely found; root mean squares of differences of centres, errors, and errors
     in sigmas."""
-    folder = work / f"{preset}-{family}-{seed}-{haze}"
-    if not (folder / "true_targets.json").exists():
-        simulate(programs, folder, preset, family, seed, haze)
+    folder = simulated(base, preset, family, seed, haze)
     truth = json.loads((folder / "true_targets.json").read_text())
     plates, seen, false, *squares = judge(truth, find(programs, folder, family))
     return plates, seen, false, *map(root_mean, squares)
@@ -108,7 +108,7 @@ def target_detection(work):
         for preset in PRESETS:
             for family in FAMILIES:
                 for seed in seeds:
-                    measured = measure(BIN, work / "targets", preset, family, seed, haze)
+                    measured = measure(BIN, work, preset, family, seed, haze)
                     lines.append(row_of(preset, family, seed, haze, measured))
                     good = good and is_good(haze, measured)
     return "\n".join(lines), good
@@ -117,7 +117,7 @@ def target_detection(work):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", type=pathlib.Path, default=BIN)
-    parser.add_argument("--work", type=pathlib.Path, default=BASE / "targets")
+    parser.add_argument("--base", type=pathlib.Path, default=BASE)
     parser.add_argument("--seeds", type=int, nargs="+", default=[31])
     parser.add_argument("--presets", nargs="+", default=PRESETS)
     parser.add_argument("--families", nargs="+", default=FAMILIES)
@@ -127,7 +127,7 @@ def main():
     for preset in given.presets:
         for family in given.families:
             for seed in given.seeds:
-                measured = measure(given.bin, given.work, preset, family, seed, given.haze)
+                measured = measure(given.bin, given.base, preset, family, seed, given.haze)
                 print(row_of(preset, family, seed, given.haze, measured),
                       "" if is_good(given.haze, measured) else "missed", flush=True)
 

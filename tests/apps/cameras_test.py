@@ -18,6 +18,7 @@ from support import colmap_text
 
 from axial_pipeline import cameras, database, exif, features, lenses, photographs, turns
 from axial_pipeline.failure import Failure
+from axial_pipeline.reconstruct_steps import colmap_steps
 
 NUMBERS = {"OPENCV": (0.1, -0.05, 0.01, -0.02), "THIN_PRISM_FISHEYE": (0.1, -0.05, 0.01, -0.02, 0, 0, 0.003, 0.004)}
 LENS = lenses.Lens(1, "OPENCV", (480, 360), (300, 310, 250, 170, *NUMBERS["OPENCV"]))
@@ -119,6 +120,8 @@ class Lenses(InFolder):
                             ("18mm.txt", lenses.Given("18mm.txt"))):
             self.assertEqual(lenses.given_as(text), given)
             self.assertEqual(given.with_file(given.file), text)
+        with self.assertRaisesRegex(Failure, "must be FILE, a focal length and a file"):
+            lenses.given_as("left/:18mm:a.txt")
 
 
 class CamerasCase(InFolder):
@@ -218,9 +221,20 @@ class Groups(CamerasCase):
         self.assertEqual(cameras.housing_of(housing, given.cameras, 1)["cameras"], {"1": "b", "2": "a"})
         given.lenses = [f"left/:{left}", str(right)]  # a lens without a prefix is for all other photographs
         self.assertEqual([one.lens.number for one in cameras.of(given, images)[0]], [2, 1])
-        given.lenses = [f"left/:{left}"]
-        with self.assertRaisesRegex(Failure, "has no lens for 3 of 5 photographs"):
-            cameras.of(given, images)
+        same = self.write("same.txt", TEXT)
+        for words, said in (([f"left/:{left}"], "has no lens for 3 of 5 photographs"),
+                            ([f"left/:{left}", f"LEFT/:{right}", str(right)], "no photograph begins with LEFT/"),
+                            ([f"left/:{left}", f"right/:{same}"], "camera 1 is in .*give the cameras different numbers")):
+            given.lenses = words
+            with self.assertRaisesRegex(Failure, said):
+                cameras.of(given, images)
+
+    def test_other_lenses_for_the_same_photographs_begin_anew(self):
+        """Features are those of COLMAP's cameras."""
+        given = self.given([(480, 360, 18), (480, 360, 24)], f"18mm:{TEXT}", f"24mm:{TEXT}")
+        before = next(iter(colmap_steps(given, self.folder)))
+        given.lenses.reverse()
+        self.assertNotEqual(next(iter(colmap_steps(given, self.folder))).settings, before.settings)
 
     def test_lenses_that_cannot_be_read_are_for_alike_photographs(self):
         self.assertEqual(self.given([(480, 360)] * 2, "").cameras, [])

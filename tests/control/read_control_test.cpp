@@ -307,20 +307,27 @@ TEST_F(ReadControl, TheScaleOfAMapIsThatOfItsProjection) {
       control.points.push_back(point);
     }
     set_map_scale(control);
-    return control;
+    return control.map_scale;
   };
-  EXPECT_NEAR(scale("EPSG:32617", 500000, 2500000).map_scale, 0.9996, 1e-7);
-  EXPECT_NEAR(scale("EPSG:32717", 700000, 7500000).map_scale,
+  EXPECT_NEAR(scale("EPSG:32617", 500000, 2500000), 0.9996, 1e-7);
+  EXPECT_NEAR(scale("EPSG:32717", 700000, 7500000),
               0.9996 * (1 + std::pow(200000 / 0.9996 / 6.363e6, 2) / 2), 2e-6);
-  EXPECT_THAT(scale("EPSG:32617", 500000, 2500000).notes, ElementsAre(HasSubstr("0.99960 m")));
+  // Fiji, where the step crosses the meridian of 180 degrees.
+  EXPECT_NEAR(scale("EPSG:32760", 819778, 8140149),
+              0.9996 * (1 + std::pow(319778 / 0.9996 / 6.36e6, 2) / 2), 5e-6);
+  EXPECT_NEAR(scale("EPSG:27572", 600000, 2200000), 0.99987742, 1e-7);  // grads; by definition
   const double sine = std::sin(std::numbers::pi / 4), e2 = 0.00669438;
   const double w2 = 1 - e2 * sine * sine;
   // The place of 45 degrees: y = R ln(tan(67.5 degrees)).
-  EXPECT_NEAR(scale("EPSG:3857", 0, 6378137 * std::asinh(1)).map_scale,
+  EXPECT_NEAR(scale("EPSG:3857", 0, 6378137 * std::asinh(1)),
               (std::sqrt(w2) + std::pow(w2, 1.5) / (1 - e2)) / 2 / sine, 1e-5);
-  EXPECT_EQ(scale("", 5, 7).map_scale, 1);
-  EXPECT_EQ(scale("LOCAL_CS[\"reef\",UNIT[\"metre\",1]]", 5, 7).map_scale, 1);
-  EXPECT_THAT(scale("", 5, 7).notes, IsEmpty());
+  EXPECT_EQ(scale("", 5, 7), 1);
+  EXPECT_EQ(scale("LOCAL_CS[\"reef\",UNIT[\"metre\",1]]", 5, 7), 1);
+  Control heights;
+  heights.crs = "EPSG:32617";
+  heights.points.emplace_back().sigma = {kNotKnown, kNotKnown, 0.01};
+  set_map_scale(heights);
+  EXPECT_EQ(heights.map_scale, 1);
 }
 
 }  // namespace

@@ -108,9 +108,14 @@ TEST_F(ControlProgram, LengthsOfBarsAreOnTheGround) {
   write_atomically(folder_ / "control.json", points.dump());
   const json report =
       refined("--control control.json --bars bars.csv --checks \"target 3-target 4\"");
-  EXPECT_THAT(said_, HasSubstr("one metre on the ground is 0.99960 m on the map of EPSG:32617"));
+  EXPECT_THAT(said_, HasSubstr("One metre is 0.99960 m on the map of the control points"));
+  EXPECT_NEAR(report["control"]["map_scale"].get<double>(), 0.9996, 1e-6);
   for (const json& bar : report["control"]["bars"])
     EXPECT_NEAR(bar["length_m"]["residual"].get<double>(), 0, 2e-5);  // 0.0002 m without the map
+  // One place does not scale the model, so that lengths stay as they are.
+  points["points"] = json::array({points["points"][0]});
+  write_atomically(folder_ / "control.json", points.dump());
+  EXPECT_EQ(refined("--control control.json --bars bars.csv", "one")["control"]["map_scale"], 1);
 }
 
 TEST_F(ControlProgram, ControlPointsPlaceTheModel) {

@@ -97,6 +97,46 @@ INSTANTIATE_TEST_SUITE_P(All, Plates,
                                          Conditions{"APRILTAG_36h11", 50, 150, 0, 0.1},
                                          Conditions{"4X4_50", 24, 50, 0.8, 0.25}));
 
+// Errors that blocks of pixels share move an outline by more than independent errors of their size.
+TEST(FindTargets, StandardDeviationsAllowForErrorsOfBlocks) {
+  const Family family = parse_family("circular12");
+  std::mt19937 random(5);
+  std::normal_distribution<float> draw(0, 4);
+  double in_sigmas = 0;
+  int found = 0;
+  for (int i = 0; i < 40; ++i) {
+    PlateView view = random_view(random, 60, 90);
+    view.noise = 0.5;
+    const Pattern pattern(family, 7);
+    cv::Mat1f photograph;
+    test::photograph(view, pattern).convertTo(photograph, CV_32F);
+    for (int y = 0; y < photograph.rows; y += 4)
+      for (int x = 0; x < photograph.cols; x += 4) photograph(cv::Rect(x, y, 4, 4)) += draw(random);
+    cv::Mat1b stored;
+    photograph.convertTo(stored, CV_8U);
+    for (const Detection& target : find_targets(stored, std::array{family})) {
+      const Eigen::Vector2d off = target.centre.pixel - centre_of_dot(view, pattern);
+      in_sigmas += (off / target.centre.sigma).squaredNorm() / 2;
+      ++found;
+    }
+  }
+  EXPECT_GE(found, 38);
+  EXPECT_LT(std::sqrt(in_sigmas / found), 1.5);  // independent errors alone: above 2
+  EXPECT_GT(std::sqrt(in_sigmas / found), 0.6);
+}
+
+// A ring is not told from bare texture if the noise is a fifth of the step.
+TEST(FindTargets, RingsInStrongNoiseAreNoTargets) {
+  const Family family = parse_family("circular12");
+  PlateView view;
+  view.width = 80;
+  const Pattern pattern(family, 30);
+  EXPECT_EQ(find_targets(test::photograph(view, pattern), std::array{family}).size(), 1u);
+  view.noise = 0.25 * (view.white - view.black);
+  view.blur = 1.2;
+  EXPECT_TRUE(find_targets(test::photograph(view, pattern), std::array{family}).empty());
+}
+
 TEST(FindTargets, ReadsBlackOnWhite) {
   const Family family = parse_family("circular12");
   const PlateView view;

@@ -147,7 +147,7 @@ def of(given, images):
     found = lenses_of(given)
     groups = groups_of(images, {lens.prefix for lens in found})
     if not found:
-        if len(groups) > 1:
+        if len(groups) > 1 or len(given.lenses) > 1:
             refuse_other_sizes(given.images, images)
             raise Failure(f"--lens {given.lens}: has no lens for photographs of several cameras or focal lengths")
         return [], []
@@ -160,13 +160,33 @@ def of(given, images):
             cameras.append(camera)
         else:
             left_out.append((group.names, reason))
+    refuse_unused_prefix(found, groups)
     refuse_if_many(given, left_out, len(images))
+    refuse_equal_numbers(given, [camera.lens for camera in cameras])
     if len(cameras) == len(found) == len(groups) == 1 and not cameras[0].words:
         return [], []
     return cameras, [*(f"warning: {len(names)} photographs are left out ({few(names)}): they are {reason}"
                        for names, reason in left_out),
                      *(f"warning: no photograph belongs to the lens of {lens.in_words()}"
                        for lens in found if lens not in chosen.values())]
+
+
+def refuse_unused_prefix(found, groups):
+    """Fails if no photograph has a name that begins as a value of --lens says."""
+    for lens in found:
+        if lens.prefix not in ("", *(group.prefix for group in groups)):
+            raise Failure(f"--lens {lens.prefix}:{lens.file}: the name of no photograph begins with {lens.prefix}")
+
+
+def refuse_equal_numbers(given, used):
+    """Fails if the housing has ports by camera, and cameras of different files have one number."""
+    is_file = given.housing and pathlib.Path(given.housing).is_file()
+    by_camera = files.read_object(pathlib.Path(given.housing)).get("cameras") if is_file else None
+    file_of = {}
+    for lens in used:
+        if lens.file != file_of.setdefault(lens.number, lens.file) and isinstance(by_camera, dict) and len(by_camera) > 1:
+            raise Failure(f"--lens: camera {lens.number} is in {file_of[lens.number]} and in {lens.file}, and "
+                          f"{given.housing} names ports by camera: give the cameras different numbers")
 
 
 def refuse_if_many(given, left_out, count):

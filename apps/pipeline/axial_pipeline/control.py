@@ -16,7 +16,8 @@ def add_options(parser):
                         "RefinePoses (docs/targets.md)")
     parser.add_argument("--bars", default="", help="known distances between targets, as for RefinePoses")
     parser.add_argument("--control", default="", help="known coordinates of targets, as for RefinePoses")
-    parser.add_argument("--rig", default="", help="cameras on one bar, as for RefinePoses (docs/rigs.md)")
+    parser.add_argument("--rig", default="", help="cameras on one bar, in the form of rig_config.json "
+                        "(docs/rigs.md)")
     parser.add_argument("--checks", default="", help="targets and bars that do not enter the adjustment, as for "
                         "RefinePoses")
 
@@ -32,6 +33,9 @@ def check(given):
         value = getattr(given, name)
         if value and not (name == "targets" and value == FIND):
             setattr(given, name, files.existing(f"--{name}", value, value, is_file=True))
+    if given.rig and not given.rig.endswith(".json"):
+        raise Failure(f"--rig {given.rig}: must be a file in the form of rig_config.json; COLMAP's rigs.txt and rigs.bin "
+                      "name images by the numbers of another model")
     for name in ("bars", "control", "checks"):
         value = getattr(given, name)
         if value and not given.targets:

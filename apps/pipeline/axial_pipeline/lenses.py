@@ -186,4 +186,9 @@ def given_as(text):
         return Given(text)
     if focal and float(focal[1]) == 0:
         raise Failure(f"--lens {text}: the focal length must be positive")
-    return Given(focal[2], focal=float(focal[1])) if focal else Given(prefix[2], prefix=prefix[1])
+    if focal:
+        return Given(focal[2], focal=float(focal[1]))
+    if given_as(prefix[2]) != Given(prefix[2]):
+        raise Failure(f"--lens {text}: must be FILE, a focal length and a file as in 18mm:FILE, or the beginning of names "
+                      "and a file as in left/:FILE")
+    return Given(prefix[2], prefix=prefix[1])

@@ -115,6 +115,7 @@ def colmap_steps(given, out):
                    reads=[given.masks, given.images], anew=[run.masks])
     yield Step("features", features_of_camera(1, command, found, out) if given.cameras else command(found),
                makes=found, reads=[given.images, *(run.lens_files if given.cameras else [])],
+               settings=given.lenses if given.cameras else [],  # which lens belongs to which photographs
                # COLMAP would make a further camera for the photographs that a killed command left.
                before=run.write_cameras, anew=colmap.database_files(found) if given.cameras else [],
                changed=[*colmap.database_files(found), out / still_features.FOUND],
