@@ -62,7 +62,7 @@ std::string plus_minus(double sigma, int digits) {
 std::string delay_in_words(const RigPart& part) {
   const pose::RigFit& fit = part.fit;
   if (part.rig.has_seconds)
-    return fmt::format("{:.1f} +- {:.1f} ms", std::abs(fit.delay) * kMilliseconds,
+    return fmt::format("{:.2f} +- {:.2f} ms", std::abs(fit.delay) * kMilliseconds,
                        fit.delay_sigma * kMilliseconds);
   return fmt::format("{:.2f} +- {:.2f} mm of the track",
                      std::abs(fit.delay) * fit.speed * kMillimetres,

@@ -25,6 +25,7 @@ constexpr double kGainOfRounds = 0.1;
 // In the rounds, positions of unknown accuracy count with their estimated standard deviation times
 // this.
 constexpr double kLooseness = 3;
+constexpr int kMostOfDelays = 6;            // adjustments; each leaves at most half of an error
 constexpr double kUsualDistance = 2;        // of a scene [m], until a scale is known
 constexpr std::size_t kTrialPoints = 1500;  // enough to distinguish scales
 // Median distances of the scene [m] that are tried: from close-ups to wide surveys.
@@ -249,6 +250,8 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context&
     while (leave_out_worst(bundle, adjusting, report.wrong_control))
       report.last = adjuster.adjust(bundle, adjusting, "adjustment without a wrong bar or place");
   };
+  for (int i = 0; i < kMostOfDelays && set_delays(bundle); ++i)
+    report.last = adjuster.adjust(bundle, adjusting, "adjustment with delays of cameras");
   // A wrong bar moves the numbers of the port, so it goes before these are judged.
   leave_out_wrong();
   if (options.keep_stated && keep_stated_numbers(bundle, adjusting)) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "base/order_statistics.h"
 #include "pose/bundle.h"
@@ -253,12 +254,17 @@ RigFit fit_of(const Bundle& bundle, const Rig& rig, std::size_t camera) {
   return fit;
 }
 
-void set_delays(Bundle& bundle) {
+bool set_delays(Bundle& bundle) {
+  constexpr double kSmall = 1.0 / 200;
+  bool changed = false;
   for (Rig& rig : bundle.rigs)
     for (std::size_t camera = 1; camera < rig.cameras.size(); ++camera) {
       const RigFit fit = fit_of(bundle, rig, camera);
-      rig.cameras[camera].delay = fit.is_late() ? fit.delay : 0;
+      double& delay = rig.cameras[camera].delay;
+      const double before = std::exchange(delay, fit.is_late() ? fit.delay : 0);
+      changed = changed || std::abs(delay - before) > kSmall * std::abs(delay);
     }
+  return changed;
 }
 
 }  // namespace axial::pose

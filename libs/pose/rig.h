@@ -110,7 +110,10 @@ struct RigFit {
 // constant is not known, because a wrong scale or pose looks the same.
 RigFit fit_of(const Bundle& bundle, const Rig& rig, std::size_t camera);
 
-// Sets RigCamera::delay of all cameras of the bundle where RigFit::is_late() holds.
-void set_delays(Bundle& bundle);
+// Sets RigCamera::delay of all cameras of the bundle where RigFit::is_late() holds, and 0
+// elsewhere. The rig pulls the photographs towards the delay that adjust() knew, so that only a
+// part of an error of the delay is found: adjust again while the result is true. It is true if a
+// delay changed by more than 1/200.
+bool set_delays(Bundle& bundle);
 
 }  // namespace axial::pose
