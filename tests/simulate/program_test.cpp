@@ -57,7 +57,7 @@ TEST_F(SimulateUnderwater, PhotographsThroughADome) {
 
 TEST_F(SimulateUnderwater, PhotographsOfTwoCameras) {
   const Outcome outcome =
-      run(kSmall + "--rig-base 0.1 --rig-port-distance 0.03 -o a --medium water --truth 0");
+      run(kSmall + "--rig-base 0.1 --rig-port-distance 0.025 -o a --medium water --truth 0");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   const io::Housing housing = io::read_housing(folder_ / "a" / "housing.json");
   const io::ColmapModel model = io::read_colmap_model(folder_ / "a" / "sparse");
@@ -68,7 +68,7 @@ TEST_F(SimulateUnderwater, PhotographsOfTwoCameras) {
     const std::string side = image.name.substr(0, image.name.find('/'));
     EXPECT_EQ(housing.port_of(image.name, image.camera), side);
     const auto& port = std::get<refractive::FlatPort<double>>(housing.ports.at(side));
-    EXPECT_EQ(port.distance == 0.03, side == "right");
+    EXPECT_EQ(port.distance == 0.025, side == "right");
   }
   refuses("--rig-delay needs --rig-base", kSmall + "--rig-delay 0.1 -o b");
 }
