@@ -3,6 +3,7 @@
 
 import dataclasses
 import json
+import os
 import pathlib
 import random
 import shutil
@@ -16,7 +17,7 @@ from programs import ProgramTest, main, png, read, write
 from stand_ins import StandIns
 from support import colmap_text
 
-from axial_pipeline import cameras, database, exif, features, lenses, photographs, turns
+from axial_pipeline import cameras, control, database, exif, features, lenses, photographs, turns
 from axial_pipeline.failure import Failure
 from axial_pipeline.reconstruct_steps import colmap_steps
 
@@ -210,7 +211,8 @@ class Groups(CamerasCase):
             self.write(f"images/{name}.jpg", jpeg(480, 360, 18, "A"))
         left, right = self.write("left.txt", TEXT), self.write("right.txt", TEXT.replace("1 OPENCV", "2 OPENCV"))
         ports = {name: {"type": "flat", "normal": [0, 0, 1]} for name in ("a", "b")}
-        housing = self.write("housing.json", json.dumps({"version": 1, "ports": ports, "cameras": {"1": "a", "2": "b"}}))
+        housing = self.write("housing.json", json.dumps({"version": 1, "ports": ports,
+                                                         "cameras": {"1": "a", "2": "b"}}))
         given = options_of(images=str(self.folder / "images"), lenses=[f"left/:{left}", f"right/:{right}"],
                            lens=str(left), housing=str(housing))
         images = photographs.found_in(given.images).images
@@ -224,7 +226,7 @@ class Groups(CamerasCase):
         same = self.write("same.txt", TEXT)
         for words, said in (([f"left/:{left}"], "has no lens for 3 of 5 photographs"),
                             ([f"left/:{left}", f"LEFT/:{right}", str(right)], "no photograph begins with LEFT/"),
-                            ([f"left/:{left}", f"right/:{same}"], "camera 1 is in .*give the cameras different numbers")):
+                            ([f"left/:{left}", f"right/:{same}"], "camera 1 is in .* different numbers")):
             given.lenses = words
             with self.assertRaisesRegex(Failure, said):
                 cameras.of(given, images)
@@ -239,6 +241,19 @@ class Groups(CamerasCase):
     def test_lenses_that_cannot_be_read_are_for_alike_photographs(self):
         self.assertEqual(self.given([(480, 360)] * 2, "").cameras, [])
         self.assertIn("the photographs have different sizes", self.failure([(480, 360), (240, 180)], ""))
+
+
+class Rigs(InFolder):
+    def test_refine_poses_reads_the_file_of_a_rig(self):
+        file = self.write("rig_config.json", "[]")
+        given = options_of(rig=os.path.relpath(file))
+        control.check(given)
+        self.assertEqual(given.rig, str(file))
+        self.assertEqual(control.words(given, self.folder), ["--rig", str(file)])
+        self.assertEqual(control.files_of(given, self.folder), [str(file)])
+        given.rig = str(self.write("rigs.txt", ""))
+        with self.assertRaisesRegex(Failure, "must be a file in the form of rig_config.json"):
+            control.check(given)
 
 
 class Turned(CamerasCase):
