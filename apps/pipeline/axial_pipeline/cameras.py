@@ -182,9 +182,11 @@ def refuse_equal_numbers(given, used):
     """Fails if the housing has ports by camera, and cameras of different files have one number."""
     is_file = given.housing and pathlib.Path(given.housing).is_file()
     by_camera = files.read_object(pathlib.Path(given.housing)).get("cameras") if is_file else None
+    if not isinstance(by_camera, dict) or len(by_camera) < 2:
+        return
     file_of = {}
     for lens in used:
-        if lens.file != file_of.setdefault(lens.number, lens.file) and isinstance(by_camera, dict) and len(by_camera) > 1:
+        if lens.file != file_of.setdefault(lens.number, lens.file):
             raise Failure(f"--lens: camera {lens.number} is in {file_of[lens.number]} and in {lens.file}, and "
                           f"{given.housing} names ports by camera: give the cameras different numbers")
 

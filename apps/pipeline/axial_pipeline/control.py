@@ -34,8 +34,8 @@ def check(given):
         if value and not (name == "targets" and value == FIND):
             setattr(given, name, files.existing(f"--{name}", value, value, is_file=True))
     if given.rig and not given.rig.endswith(".json"):
-        raise Failure(f"--rig {given.rig}: must be a file in the form of rig_config.json; COLMAP's rigs.txt and rigs.bin "
-                      "name images by the numbers of another model")
+        raise Failure(f"--rig {given.rig}: must be a file in the form of rig_config.json; COLMAP's rigs.txt and "
+                      "rigs.bin name images by the numbers of another model")
     for name in ("bars", "control", "checks"):
         value = getattr(given, name)
         if value and not given.targets:

@@ -170,5 +170,6 @@ def rows(given, images, lens_lines, needs):
     yield from (("lens", line) for line in lens_lines)
     yield from (("housing", line) for line in ports_in_words(given.housing))
     control = [f"--{name} {getattr(given, name)}" for name in ("bars", "control", "rig") if getattr(given, name)]
-    yield "scale", given.scale_from or ", ".join(control) or "by refraction alone, which is weak: give --scale-from if a length is known"
+    yield "scale", (given.scale_from or ", ".join(control)
+                    or "by refraction alone, which is weak: give --scale-from if a length is known")
     yield from estimates.lines_about(needs, pathlib.Path(given.output))

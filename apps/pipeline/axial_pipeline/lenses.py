@@ -189,6 +189,6 @@ def given_as(text):
     if focal:
         return Given(focal[2], focal=float(focal[1]))
     if given_as(prefix[2]) != Given(prefix[2]):
-        raise Failure(f"--lens {text}: must be FILE, a focal length and a file as in 18mm:FILE, or the beginning of names "
-                      "and a file as in left/:FILE")
+        raise Failure(f"--lens {text}: must be FILE, a focal length and a file as in 18mm:FILE, or the beginning of "
+                      "names and a file as in left/:FILE")
     return Given(prefix[2], prefix=prefix[1])
