@@ -198,10 +198,10 @@ control::Control read_control(const ControlOptions& options) {
     add(options.control, control::Role::points);
   if (options.epsg > 0 && all.points.empty())
     fail("--epsg {}: is for control points, and there are none", options.epsg);
+  for (const std::string& note : all.notes) log_info("{}", note);
   if (!options.checks.empty())
     control::mark_checks(all, io::split_list(options.checks, "--checks " + options.checks));
   control::set_map_scale(all);
-  for (const std::string& note : all.notes) log_info("{}", note);
   return all;
 }
 

@@ -125,7 +125,7 @@ void Refining::tell_input() const {
   if (const double scale = refined_.control.map_scale; scale != 1)
     log_info(
         "One metre is {:.5f} m on the map of the control points: known lengths are multiplied "
-        "by this",
+        "by this factor",
         scale);
   if (refined_.after.unseen > 0)
     log_warning("{} observations lie at pixels for which the lens in air has no ray",

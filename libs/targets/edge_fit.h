@@ -81,8 +81,8 @@ class EdgeResiduals {
   const Share& share_;
 };
 
-// The normalised gradients of the sum of squares, J^T r, each summed over a block of neighbouring
-// pixels, as columns. With H = J^T J and S, the sum of their outer products, H^-1 S H^-1 is the
+// The gradients of half the sum of squares, J^T r, each summed over a block of neighbouring pixels,
+// as columns. With H = J^T J and S, the sum of their outer products, H^-1 S H^-1 is the
 // covariance if errors in a block are alike, such as those of a bent side, of JPEG and of light
 // that is not uniform.
 template <int kCount>

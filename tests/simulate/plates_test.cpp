@@ -110,7 +110,7 @@ TEST_F(Plates, PlacesOnAPlateAreOnTheRaysOfTheirPixels) {
 
 TEST_F(Plates, ACoveredPartHidesAPlate) {
   const Plate& plate = plates_[0];
-  Plate stone = plate;  // covers a sixteenth of the side, away from the centre and the corners
+  Plate stone = plate;  // covers a sixteenth of the plate, but no corner
   stone.centre += plate.side * (0.25 * plate.axes.col(0) - 0.02 * plate.axes.col(2));
   stone.side = plate.side / 4;
   int seen = 0;

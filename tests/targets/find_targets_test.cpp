@@ -121,11 +121,11 @@ TEST(FindTargets, StandardDeviationsAllowForErrorsOfBlocks) {
     }
   }
   EXPECT_GE(found, 38);
-  EXPECT_LT(std::sqrt(in_sigmas / found), 1.5);  // independent errors alone: above 2
+  EXPECT_LT(std::sqrt(in_sigmas / found), 1.5);  // independent errors alone: 3.0
   EXPECT_GT(std::sqrt(in_sigmas / found), 0.6);
 }
 
-// A ring is not told from bare texture if the noise is a fifth of the step.
+// A ring is not told from bare texture if the noise is a quarter of the step.
 TEST(FindTargets, RingsInStrongNoiseAreNoTargets) {
   const Family family = parse_family("circular12");
   PlateView view;
