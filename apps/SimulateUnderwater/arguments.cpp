@@ -101,6 +101,22 @@ void declare_photographs(OptionList& visible, Arguments& a) {
            "share of the light that the medium, water or air, scatters into view, 0 to 1 (default: "
            "the preset's value, which is 0 except for NAME-hazy)")
       .range(0, 1)
+      .add("water", &a.water,
+           "light that water changes by wavelength, of Jerlov's type I, IA, IB, II, III, 1C, 3C, "
+           "5C, "
+           "7C or 9C; writes light.json and the surface's colours. Nine numbers: plain water, "
+           "J exp(-a d) + B (1 - exp(-b d)), with a, b and B each for R,G,B")
+      .add_with_default("light", &a.light, "with --water: sun, lamp or lamp:FILE")
+      .add_with_default("depth", &a.depth,
+                        "with --water: depth of the scene's z = 0 below the water's surface [m]")
+      .range(0, 200)
+      .add("scattering", &a.scattering,
+           "with --water: scattering at 550 nm [1/m] (default: usual for the type)")
+      .range(0, 20)
+      .add_with_default("response", &a.response,
+                        "with --water: how the camera maps light to values: linear, srgb or camera "
+                        "(srgb with more contrast)")
+      .one_of({"linear", "srgb", "camera"})
       .add_with_default("noise", &a.noise, "standard deviation of the noise [grey levels]")
       .range(0, 255)
       .add_with_default("jpeg-quality", &a.jpeg_quality, "JPEG quality, 1 to 100")
@@ -126,8 +142,13 @@ ProgramOptions describe(Arguments& a) {
   return program;
 }
 
-void check(const Arguments& a) {
+void check(const Arguments& a, const ParsedOptions& parsed) {
   if (a.truth_only && !a.truth) fail("--truth-only contradicts --truth 0");
+  for (const char* of_water : {"light", "depth", "scattering", "response"})
+    if (given(parsed, of_water) && a.water.empty()) fail("--{} needs --water", of_water);
+  for (const char* without : {"haze", "water-level", "truth-only"})
+    if (given(parsed, without) && !a.water.empty()) fail("--{} contradicts --water", without);
+  if (!a.water.empty() && a.medium == "air") fail("--water contradicts --medium air");
   if (a.output.empty()) fail("no output folder given (-o DIR)");
 }
 

@@ -18,6 +18,9 @@ struct Arguments {
   int samples = 3, jpeg_quality = 93;
   int sparse_points = 400;  // for each view
   double haze = 0, noise = 1.2;
+  std::string water, light = "sun", response = "srgb";  // water: empty for light without water
+  double depth = 6;                                     // of the world's z = 0 [m]
+  double scattering = -1;                               // [1/m]; below 0: usual for the water
   bool truth = true, truth_only = false;
   int targets = 0;  // single plates
   std::string target_family = "circular12";
@@ -33,7 +36,7 @@ struct Arguments {
 ProgramOptions describe(Arguments& a);
 
 // Error if options are missing or contradict each other.
-void check(const Arguments& a);
+void check(const Arguments& a, const ParsedOptions& parsed);
 
 // Replaces the preset's lens by the lens of --lens, if this option is given. Error for an unknown
 // model, for a wrong number of coefficients, and for a lens that has no ray at a pixel of the

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "io/images/image.h"
+#include "light.h"
 #include "plates.h"
 #include "simulate/second_camera.h"
 #include "write_scene.h"
@@ -19,7 +20,8 @@ std::uint32_t noise_seed(const simulate::PresetOptions& preset) {
   return preset.changed ? ~preset.seed : preset.seed;
 }
 
-// Renders the images and truth of all views in one medium, as far as the options ask for them.
+// Renders the images and truth of all views in one medium, as far as the options ask for them. With
+// --water, photographs under water are not made here.
 void photograph(const Arguments& a, const simulate::Preset& preset, const simulate::RayScene& scene,
                 const simulate::Shader& shader, bool water, const std::filesystem::path& folder) {
   for (std::size_t i = 0; i < preset.views.size(); ++i)
@@ -32,7 +34,7 @@ void photograph(const Arguments& a, const simulate::Preset& preset, const simula
     if (a.truth)
       write_truth(folder, view_name(preset, i),
                   simulate::render_truth(scene, preset.lens, port, view));
-    if (!a.truth_only) {
+    if (!a.truth_only && !(water && !a.water.empty())) {
       cv::Mat3f radiance =
           simulate::render_radiance(scene, shader, preset.lens, port, view, a.samples);
       simulate::add_haze(radiance, a.haze);
@@ -55,7 +57,9 @@ PlatesOnGround plates_of(const Arguments& a, const simulate::Preset& preset,
   return plates_on(simulate::terrain_mesh(before.terrain), before, a);
 }
 
+// `water`: empty unless --water is given.
 void simulate_scene(const Arguments& a, const simulate::Preset& preset,
+                    const std::optional<simulate::AnyWater>& water,
                     const std::filesystem::path& folder) {
   make_folder(folder);
   simulate::TriangleMesh mesh = simulate::terrain_mesh(preset.terrain);
@@ -79,13 +83,20 @@ void simulate_scene(const Arguments& a, const simulate::Preset& preset,
   }
   if (a.medium != "water") photograph(a, preset, scene, shader, false, folder / "air");
   if (a.medium != "air") photograph(a, preset, scene, shader, true, folder / "water");
+  if (water) {
+    const simulate::Shader albedo = simulate::with_plates(
+        simulate::albedo_shader(preset.texture), plates.plates, first_plate_face, a.samples);
+    const std::vector<Eigen::Vector3f> normals = simulate::vertex_normals(mesh);
+    photograph_with_light(a, preset, {scene, mesh, normals, albedo}, *water, noise_seed(a.preset),
+                          folder / "water");
+  }
 }
 
 int run(int argc, char** argv) {
   Arguments arguments;
   const ParsedOptions parsed = parse_options(argc, argv, describe(arguments));
   if (!parsed.run) return parsed.exit_code;
-  check(arguments);
+  check(arguments, parsed);
   const ThreadLimit limit(parsed.common.max_threads);
   simulate::Preset preset = simulate::make_preset(arguments.preset);
   if (!given(parsed, "haze")) arguments.haze = preset.haze;
@@ -93,7 +104,9 @@ int run(int argc, char** argv) {
   apply_port_options(preset, arguments, parsed);
   simulate::check_ports(preset);
   if (given(parsed, "rig-base")) simulate::add_second_camera(preset, arguments.second_camera);
-  simulate_scene(arguments, preset, arguments.output);
+  std::optional<simulate::AnyWater> water;
+  if (!arguments.water.empty()) water = water_of(arguments);
+  simulate_scene(arguments, preset, water, arguments.output);
   return 0;
 }
 

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "io/bytes/json.h"
-#include "private/json_entry.h"
+#include "io/bytes/json_entry.h"
 #include "private/readers.h"
 #include "private/stated_points.h"
 

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "control/labels.h"
 #include "io/bytes/json.h"
-#include "private/json_entry.h"
+#include "io/bytes/json_entry.h"
 
 namespace axial::control {
 namespace {

@@ -107,4 +107,12 @@ bool RayScene::blocked(const Eigen::Vector3d& origin, const Eigen::Vector3d& dir
   return ray.tfar < 0;
 }
 
+Eigen::Vector3d smooth_normal(const TriangleMesh& mesh, std::span<const Eigen::Vector3f> normals,
+                              const Hit& hit) {
+  const auto& [a, b, c] = mesh.faces[hit.face];
+  const Eigen::Vector3f blend =
+      (1 - hit.u - hit.v) * normals[a] + hit.u * normals[b] + hit.v * normals[c];
+  return blend.cast<double>().normalized();
+}
+
 }  // namespace axial::simulate

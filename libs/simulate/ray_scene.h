@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "simulate/triangle_mesh.h"
 
@@ -46,5 +47,10 @@ class RayScene {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+// The unit normal at `hit` of the smooth surface: between the normals of the face's corners.
+// `normals`: vertex_normals() of `mesh`, which the scene of the hit was built from.
+Eigen::Vector3d smooth_normal(const TriangleMesh& mesh, std::span<const Eigen::Vector3f> normals,
+                              const Hit& hit);
 
 }  // namespace axial::simulate

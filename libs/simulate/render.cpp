@@ -27,18 +27,18 @@ double pixel_width(const Lens& lens, const Port* port, const SceneRay& in_camera
   return in_air / lens.focal + distance / (lens.focal * magnification);
 }
 
-Eigen::Vector3f sample_color(const RayScene& scene, const Shader& shader, const Lens& lens,
-                             const Port* port, const View& view, double u, double v) {
+}  // namespace
+
+std::optional<SurfacePoint> surface_point(const RayScene& scene, const Lens& lens, const Port* port,
+                                          const View& view, double u, double v) {
   const auto in_camera = trace_pixel(lens, port, u, v);
-  if (!in_camera) return Eigen::Vector3f::Zero();
+  if (!in_camera) return std::nullopt;
   const SceneRay ray = to_world(view, *in_camera);
   const auto hit = scene.first_hit(ray.start, ray.direction);
-  if (!hit) return Eigen::Vector3f::Zero();
+  if (!hit) return std::nullopt;
   const double footprint = pixel_width(lens, port, *in_camera, hit->distance);
-  return shader({ray.start + hit->distance * ray.direction, *hit, footprint});
+  return SurfacePoint{ray.start + hit->distance * ray.direction, *hit, footprint};
 }
-
-}  // namespace
 
 cv::Mat3f render_radiance(const RayScene& scene, const Shader& shader, const Lens& lens,
                           const Port* port, const View& view, int samples) {
@@ -52,7 +52,9 @@ cv::Mat3f render_radiance(const RayScene& scene, const Shader& shader, const Len
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       for (int i = 0; i < samples; ++i)
         for (int j = 0; j < samples; ++j)
-          sum += sample_color(scene, shader, lens, port, view, x + offset(j), y + offset(i));
+          if (const auto point =
+                  surface_point(scene, lens, port, view, x + offset(j), y + offset(i)))
+            sum += shader(*point);
       image(y, x) = cv::Vec3f(sum.z(), sum.y(), sum.x()) * weight;
     }
   });

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "simulate/optics.h"
 #include "simulate/ray_scene.h"
@@ -22,6 +23,11 @@ struct SurfacePoint {
 // Returns the linear colour (R G B, 0 to 1) of a surface point. The colour may depend on the camera
 // only through SurfacePoint::footprint. Shaders are called concurrently.
 using Shader = std::function<Eigen::Vector3f(const SurfacePoint&)>;
+
+// Returns where the ray of pixel (u, v) first meets the scene; empty if the pixel has no ray or the
+// ray hits nothing. `port`: the port in the camera frame of `view`; null for a dry camera.
+std::optional<SurfacePoint> surface_point(const RayScene& scene, const Lens& lens, const Port* port,
+                                          const View& view, double u, double v);
 
 // Renders a linear image with the channel order B G R. Rays that hit nothing, and pixels without a
 // ray (trace_pixel()), are black. `port`: the port in the camera frame of `view`; null for a dry

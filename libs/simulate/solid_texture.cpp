@@ -90,10 +90,7 @@ struct Seabed {
 
   Eigen::Vector3f operator()(const SurfacePoint& point) const {
     static const Eigen::Vector3d kSun = Eigen::Vector3d(0.40, 0.28, 0.87).normalized();
-    const auto& [a, b, c] = mesh.faces[point.hit.face];
-    const Eigen::Vector3f blend = (1 - point.hit.u - point.hit.v) * normals[a] +
-                                  point.hit.u * normals[b] + point.hit.v * normals[c];
-    const Eigen::Vector3d normal = blend.cast<double>().normalized();
+    const Eigen::Vector3d normal = smooth_normal(mesh, normals, point.hit);
     const double lift = 0.004 * options.largest;  // keeps a face from shading itself
     const bool lit = point.hit.normal.dot(kSun) > 0 &&
                      !scene.blocked(point.position + lift * point.hit.normal, kSun, 0, 1e3);
@@ -122,6 +119,12 @@ Eigen::Vector3f seabed_albedo(const Eigen::Vector3d& p, double footprint,
   const Eigen::Vector3f albedo = m.color.cwiseProduct(tint) * std::clamp(tone, 0.12f, 2.2f);
   if (options.contrast == 1) return albedo;
   return kSediment.color + static_cast<float>(options.contrast) * (albedo - kSediment.color);
+}
+
+Shader albedo_shader(const TextureOptions& options) {
+  return [options](const SurfacePoint& point) {
+    return seabed_albedo(point.position, point.footprint, options);
+  };
 }
 
 Shader seabed_shader(const TriangleMesh& mesh, const RayScene& scene,

@@ -21,6 +21,9 @@ struct TextureOptions {
 Eigen::Vector3f seabed_albedo(const Eigen::Vector3d& p, double footprint,
                               const TextureOptions& options);
 
+// Returns a shader that returns seabed_albedo(), without any light.
+Shader albedo_shader(const TextureOptions& options);
+
 // Returns a shader with the reflectance of seabed_albedo(): Lambertian shading under a fixed sun
 // with cast shadows and ambient light. `scene` must be built from `mesh`. Both must outlive the
 // shader.

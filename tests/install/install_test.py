@@ -16,8 +16,8 @@ import unittest
 BUILD, SOURCE, VERSION = sys.argv[1:4]
 PROGRAMS = ["AlignModel", "CalibrateHousing", "CompareSurveys", "DensifyPointCloud",
             "EvaluateReconstruction", "ExtractFrames", "FindTargets", "InterfaceCOLMAP", "MapSurface", "ReconstructMesh",
-            "RefineMesh", "RefinePoses", "ReproducePaper", "SimulateUnderwater", "TextureMesh", "TransformScene",
-            "ViewScene"]
+            "RefineMesh", "RefinePoses", "ReproducePaper", "RestoreColors", "SimulateUnderwater", "TextureMesh",
+            "TransformScene", "ViewScene"]
 
 
 def output_of(*command):

@@ -13,7 +13,7 @@
 #include "base/error.h"
 #include "io/bytes/json.h"
 
-namespace axial::control {
+namespace axial::io {
 
 inline bool is_finite_number(const nlohmann::json& value) {
   return value.is_number() && std::isfinite(value.get<double>());
@@ -32,7 +32,7 @@ struct Entry {
   [[noreturn]] void refuse(const char* key, const char* expected) const {
     const auto found = object.find(key);
     fail("{}.{} is {}, but must be {}", where, key,
-         found == object.end() ? "missing" : io::to_text(*found), expected);
+         found == object.end() ? "missing" : to_text(*found), expected);
   }
   double number(const char* key) const {
     const nlohmann::json* value = find(key);
@@ -84,4 +84,4 @@ void for_each_entry(const nlohmann::json& file, const std::string& name, const c
   }
 }
 
-}  // namespace axial::control
+}  // namespace axial::io

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "options.h"
+
+#include <array>
+
+#include "base/error.h"
+#include "base/memory.h"
+#include "base/option_values.h"
+#include "base/parse_number.h"
+#include "base/split.h"
+#include "base/version.h"
+#include "io/images/bit_depth.h"
+#include "io/openmvs/scene_files.h"
+#include "io/openmvs/scene_options.h"
+#include "survey/survey.h"
+
+namespace axial::apps {
+namespace {
+
+// The values of the command line before they are checked and converted.
+struct Raw {
+  std::string input, light = "auto", curve = "srgb", grey;
+  io::SceneOptions scene;
+};
+
+GreyPatch grey_of(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  GreyPatch grey{text.substr(0, colon), {}};
+  std::array<int, 4> numbers{};
+  std::size_t count = 0;
+  if (colon != std::string::npos)
+    for (const std::string_view word : split(std::string_view(text).substr(colon + 1), ',')) {
+      const auto number = parse_finite<double>(word);
+      if (!number || *number < 0 || *number > 1e6 || count == numbers.size()) {
+        count = 0;
+        break;
+      }
+      numbers[count++] = static_cast<int>(*number);
+    }
+  grey.part = {numbers[0], numbers[1], numbers[2], numbers[3]};
+  if (count != numbers.size() || grey.part.empty() || grey.image.empty())
+    fail("--grey is '{}', but must be IMAGE:X,Y,WIDTH,HEIGHT in pixels", text);
+  return grey;
+}
+
+void declare(OptionList& list, Raw& raw, Settings& settings) {
+  list.add("input-file,i", &raw.input, "scene with cameras and images")
+      .add("mesh-file,m", &settings.mesh, "mesh of the scene (<input>.ply)")
+      .add("output,o", &settings.output, "folder for the photographs without water (required)")
+      .output_folder()
+      .add_with_default("light", &raw.light,
+                        "light of the photographs: sun, lamp (lamps that move with the camera), or "
+                        "auto: by the photographs")
+      .one_of({"auto", "sun", "lamp"})
+      .add_with_default("curve", &raw.curve,
+                        "how the photographs' values stand for light: srgb, linear or gamma:G")
+      .add("grey", &raw.grey,
+           "a part of a photograph that is grey in white light: IMAGE:X,Y,WIDTH,HEIGHT [px] "
+           "(default: the seabed is grey in the mean)")
+      .add_with_default("points", &settings.observe.points,
+                        "points of the surface whose colours are compared between photographs")
+      .range(100, 10000000)
+      .add_max_memory(64 * kMegabyte)
+      .add_with_default("jpeg-quality", &settings.jpeg_quality, "JPEG quality, 1 to 100")
+      .range(1, 100)
+      .add_with_default("masks", &settings.masks,
+                        "also write masks/, with 0 for pixels whose colour is not determined");
+  io::declare_bit_depth(list, settings.survey.bit_depth);
+  io::declare_scene_options(list, raw.scene);
+}
+
+void convert(const Raw& raw, Options& options) {
+  Settings& settings = options.settings;
+  settings.survey.files = io::scene_files(raw.scene, raw.input, options.parsed);
+  if (settings.mesh.empty()) settings.mesh = io::cloud_beside(settings.survey.files.scene);
+  if (settings.output.empty()) fail("no output folder given (-o DIR)");
+  if (raw.light == "sun") settings.light = color::Light::sun;
+  if (raw.light == "lamp") settings.light = color::Light::lamp;
+  settings.transfer = color::Transfer::parse(raw.curve);
+  if (!raw.grey.empty()) settings.grey = grey_of(raw.grey);
+  settings.survey.has_masks = false;
+}
+
+}  // namespace
+
+Options parse_command_line(int argc, const char* const* argv) {
+  Options options;
+  options.settings.survey.resolution = {0, 1, 1 << 20};
+  Raw raw;
+  ProgramOptions program{"RestoreColors",
+                         "gives photographs the colours that they have without water",
+                         OptionList("Colour options")};
+  program.version = version_line(program.name);
+  declare(program.visible, raw, options.settings);
+  options.parsed = parse_options(argc, argv, program);
+  if (options.parsed.run) convert(raw, options);
+  return options;
+}
+
+}  // namespace axial::apps

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "axial/survey.h"
+#include "base/program.h"
+#include "color/observations.h"
+#include "color/restore.h"
+
+namespace axial::apps {
+
+// A part of a photograph that is grey in white light.
+struct GreyPatch {
+  std::string image;  // the end of the photograph's path
+  cv::Rect part;      // [px]
+};
+
+struct Settings {
+  survey::Options survey;
+  std::filesystem::path mesh, output;
+  std::optional<color::Light> light;  // empty: by the photographs
+  color::Transfer transfer;
+  std::optional<GreyPatch> grey;
+  color::ObserveOptions observe;
+  int jpeg_quality = 95;
+  bool masks = false;  // write masks of pixels that are not determined
+};
+
+struct Options {
+  ParsedOptions parsed;
+  Settings settings;
+};
+
+// Parses and checks the command line.
+Options parse_command_line(int argc, const char* const* argv);
+
+}  // namespace axial::apps

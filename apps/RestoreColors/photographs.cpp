@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "photographs.h"
+
+#include <algorithm>
+
+#include "base/atomic_file.h"
+#include "base/context.h"
+#include "base/error.h"
+#include "base/file_extension.h"
+#include "io/images/image.h"
+
+namespace axial::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The deepest folder that contains all photographs.
+fs::path common_folder(const survey::Survey& survey) {
+  fs::path common = survey.views.front().file.parent_path();
+  for (const survey::View& view : survey.views) {
+    const fs::path folder = view.file.parent_path();
+    const auto ends = std::ranges::mismatch(common, folder);
+    fs::path shared;
+    for (auto part = common.begin(); part != ends.in1; ++part) shared /= *part;
+    common = shared;
+  }
+  return common;
+}
+
+color::Rendering rendering_of(const Settings& settings, const survey::View& view,
+                              const Eigen::Array3f& gain) {
+  const bool jpeg = is_jpeg_name(view.file);
+  return {gain, settings.transfer, jpeg ? 8 : view.header.bits};
+}
+
+geometry::PosedCamera posed(const survey::View& view) {
+  return {view.camera, view.pose};
+}
+
+}  // namespace
+
+cv::Mat3f read_light(const survey::Survey& survey, std::size_t view,
+                     const color::Transfer& transfer) {
+  return color::light_of(io::read_photograph(survey.views[view].file).pixels, survey.bit_depth,
+                         transfer, true);
+}
+
+std::vector<fs::path> output_names(const survey::Survey& survey) {
+  const fs::path folder = common_folder(survey);
+  std::vector<fs::path> names;
+  for (const survey::View& view : survey.views) {
+    fs::path name = view.file.lexically_relative(folder);
+    if (!is_jpeg_name(name)) name.replace_extension(".png");
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+double write_restored(const Settings& settings, const survey::Survey& survey,
+                      const color::SeenSurface& surface, const color::WaterModel& model,
+                      const Eigen::Array3f& gain, const fs::path& folder, const Context& context) {
+  const std::vector<fs::path> names = output_names(survey);
+  ProgressCounter progress(context.stage("Restoring photographs"), survey.views.size());
+  double known = 0, all = 0;
+  for (std::size_t i = 0; i < survey.views.size(); ++i) {
+    const survey::View& view = survey.views[i];
+    const color::Restored restored =
+        color::restore(read_light(survey, i, settings.transfer), surface.sights(posed(view)),
+                       view.camera, model, rendering_of(settings, view, gain));
+    const fs::path file = folder / names[i];
+    make_folder(file.parent_path());
+    if (is_jpeg_name(file))
+      io::write_jpeg(file, restored.pixels, settings.jpeg_quality);
+    else
+      io::write_png(file, restored.pixels);
+    if (settings.masks) {
+      const fs::path mask = folder / "masks" / (names[i].string() + ".png");
+      make_folder(mask.parent_path());
+      io::write_png(mask, restored.known);
+    }
+    known += cv::countNonZero(restored.known);
+    all += static_cast<double>(restored.known.total());
+    progress.add();
+  }
+  return known / all;
+}
+
+std::size_t view_of_grey(const GreyPatch& grey, const survey::Survey& survey) {
+  const auto found = std::ranges::find_if(survey.views, [&](const survey::View& view) {
+    return view.file.string().ends_with(grey.image);
+  });
+  if (found == survey.views.end()) fail("--grey {}: no photograph has this name", grey.image);
+  const cv::Rect all(0, 0, found->camera.width, found->camera.height);
+  if ((grey.part & all) != grey.part)
+    fail("--grey {}: the part lies outside the photograph of {} x {} pixels", grey.image, all.width,
+         all.height);
+  return static_cast<std::size_t>(found - survey.views.begin());
+}
+
+std::uint64_t bytes_to_restore(const survey::Survey& survey) {
+  // Light, sights, their copies while gaps are filled, and the result in 16 and 8 bits.
+  constexpr std::uint64_t kEachPixel = 12 + 16 + 6 + 4 + 6 + 3 + 1;
+  std::uint64_t most = 0;
+  for (const survey::View& view : survey.views)
+    most = std::max(most, view.pixels() * (kEachPixel + view.header.decode_bytes));
+  return most;
+}
+
+Eigen::Array3f grey_gain(const Settings& settings, const survey::Survey& survey,
+                         const color::SeenSurface& surface, const color::WaterModel& model,
+                         const Eigen::Array3f& world) {
+  const GreyPatch& grey = *settings.grey;
+  const std::size_t index = view_of_grey(grey, survey);
+  const survey::View& view = survey.views[index];
+  const cv::Mat3f light = read_light(survey, index, settings.transfer);
+  const color::SightImage sights = surface.sights(posed(view));
+  Eigen::Array3f sum = Eigen::Array3f::Zero();
+  int count = 0;
+  for (int y = grey.part.y; y < grey.part.br().y; ++y)
+    for (int x = grey.part.x; x < grey.part.br().x; ++x) {
+      const cv::Vec3f &l = light(y, x), &n = sights.normal(y, x);
+      const Eigen::Array3f color(l[0], l[1], l[2]);
+      if (!color.isFinite().all() || !(sights.way(y, x) > 0)) continue;
+      sum += color::surface_light(
+          model, {color::place_of({x, y}, view.camera), sights.way(y, x), {n[0], n[1], n[2]}},
+          color);
+      ++count;
+    }
+  if (count == 0 || !(sum > 0).all())
+    fail("--grey {}: the light of this part is not known: it is clipped, or no surface is there",
+         grey.image);
+  const Eigen::Array3f gain = count / sum;
+  return gain * (world.mean() / gain.mean());
+}
+
+}  // namespace axial::apps

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The photographs that are read and written.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "color/observations.h"
+#include "color/restore.h"
+#include "options.h"
+#include "survey/survey.h"
+
+namespace axial::apps {
+
+// The light of a photograph, with marks for clipped channels.
+cv::Mat3f read_light(const survey::Survey& survey, std::size_t view,
+                     const color::Transfer& transfer);
+
+// The names of the views' photographs in the output: their paths below the folder that contains
+// them all. JPEG and PNG keep their names; other photographs become PNG.
+std::vector<std::filesystem::path> output_names(const survey::Survey& survey);
+
+// Restores and writes all photographs, and with Settings::masks the masks, into `folder`. Returns
+// the share of pixels whose colour is determined.
+double write_restored(const Settings& settings, const survey::Survey& survey,
+                      const color::SeenSurface& surface, const color::WaterModel& model,
+                      const Eigen::Array3f& gain, const std::filesystem::path& folder,
+                      const Context& context);
+
+// The view whose photograph has Settings::grey. Error if no photograph has its name, and if it lies
+// outside the photograph.
+std::size_t view_of_grey(const GreyPatch& grey, const survey::Survey& survey);
+
+// The gains by which Settings::grey is grey, as bright as by `world`. Errors as for view_of_grey(),
+// and if its light is not known.
+Eigen::Array3f grey_gain(const Settings& settings, const survey::Survey& survey,
+                         const color::SeenSurface& surface, const color::WaterModel& model,
+                         const Eigen::Array3f& world);
+
+// The memory [bytes] of write_restored() besides the surface, for the largest photograph.
+std::uint64_t bytes_to_restore(const survey::Survey& survey);
+
+}  // namespace axial::apps

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "light.h"
+
+#include <nlohmann/json.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "base/error.h"
+#include "base/parse_number.h"
+#include "base/progress.h"
+#include "base/split.h"
+#include "io/bytes/json.h"
+#include "io/bytes/json_entry.h"
+#include "io/images/image.h"
+#include "write_scene.h"
+
+namespace axial::apps {
+namespace {
+
+using nlohmann::json;
+
+simulate::PlainWater plain_water(const std::string& text) {
+  constexpr std::size_t kNumbers = 9;
+  std::vector<float> numbers;
+  for (const std::string_view word : split(text, ',')) {
+    const auto number = parse_finite<double>(word);
+    if (!number || *number < 0) fail("--water {}: '{}' is not a number of at least 0", text, word);
+    numbers.push_back(static_cast<float>(*number));
+  }
+  if (numbers.size() != kNumbers)
+    fail("--water {}: must be a type of water, or nine numbers: a, b and B, each for R, G and B",
+         text);
+  const Eigen::Map<const Eigen::Array3f> a(numbers.data()), b(&numbers[3]), veil(&numbers[6]);
+  return {a, b, veil};
+}
+
+std::vector<simulate::Lamp> read_lamps(const std::filesystem::path& path) {
+  const json file = io::read_json(path);
+  const std::string name = path.string();
+  std::vector<simulate::Lamp> lamps;
+  io::for_each_entry(file, name, "lamps", [&](const io::Entry& entry) {
+    entry.require_known({"place", "direction", "half_angle_degrees", "power"});
+    const std::vector<double> place = entry.numbers("place", 3, "three numbers [m]");
+    const std::vector<double> axis = entry.numbers("direction", 3, "three numbers");
+    simulate::Lamp lamp{{place[0], place[1], place[2]}, {axis[0], axis[1], axis[2]}};
+    if (!(lamp.direction.norm() > 0)) entry.refuse("direction", "a direction");
+    lamp.direction.normalize();
+    lamp.half_angle = simulate::kRadians * entry.number_or("half_angle_degrees", 40);
+    lamp.power = entry.number_or("power", 1);
+    if (!(lamp.half_angle > 0 && lamp.half_angle < 3))
+      entry.refuse("half_angle_degrees", "between 0 and 170");
+    if (!(lamp.power > 0)) entry.refuse("power", "above 0");
+    lamps.push_back(lamp);
+  });
+  if (lamps.empty()) fail_in(name, "lamps must be a list of at least one lamp");
+  return lamps;
+}
+
+simulate::Light light_of(const Arguments& a) {
+  simulate::Light light;
+  light.sun.depth = a.depth;
+  constexpr std::string_view kFile = "lamp:";
+  if (a.light == "lamp")
+    light.lamps = simulate::usual_lamps();
+  else if (a.light.starts_with(kFile))
+    light.lamps = read_lamps(a.light.substr(kFile.size()));
+  else if (a.light != "sun")
+    fail("--light is '{}', but must be sun, lamp or lamp:FILE", a.light);
+  return light;
+}
+
+json numbers(const simulate::Spectrum& spectrum) {
+  json list = json::array();
+  for (const float value : spectrum) list.push_back(value);
+  return list;
+}
+
+json numbers(const Eigen::Array3f& values) {
+  return {values[0], values[1], values[2]};
+}
+
+json numbers(const Eigen::Vector3d& values) {
+  return {values[0], values[1], values[2]};
+}
+
+json describe(const simulate::PlainWater& water) {
+  return {{"model", "plain"},
+          {"a", numbers(water.a)},
+          {"b", numbers(water.b)},
+          {"veil", numbers(water.veil)}};
+}
+
+json describe(const simulate::SpectralWater& lit) {
+  json file = {{"model", "spectral"},
+               {"type", lit.water.type},
+               {"wavelengths_nm", json::array()},
+               {"absorption_per_m", numbers(lit.water.absorption)},
+               {"scattering_per_m", numbers(lit.water.scattering)},
+               {"daylight_loss_per_m", numbers(lit.water.daylight_loss)},
+               {"blurred_share", lit.water.blurred},
+               {"lamps", json::array()}};
+  for (int band = 0; band < simulate::kBands; ++band)
+    file["wavelengths_nm"].push_back(simulate::wavelength(band));
+  for (const simulate::Lamp& lamp : lit.light.lamps)
+    file["lamps"].push_back({{"place", numbers(lamp.place)},
+                             {"direction", numbers(lamp.direction)},
+                             {"half_angle_degrees", lamp.half_angle / simulate::kRadians},
+                             {"power", lamp.power}});
+  if (lit.light.lamps.empty()) file["depth_m"] = lit.light.sun.depth;
+  return file;
+}
+
+// One exposure for all photographs, from a few views that are rendered small.
+double exposure_of(const simulate::Preset& preset, const simulate::LitScene& scene,
+                   const simulate::AnyWater& water, const cv::Vec3f& balance) {
+  constexpr std::size_t kViews = 5;
+  constexpr int kSmaller = 8;
+  simulate::Lens lens = preset.lens;
+  lens.width = std::max(1, lens.width / kSmaller);
+  lens.height = std::max(1, lens.height / kSmaller);
+  lens.focal /= kSmaller;
+  lens.cx = (lens.cx + 0.5) / kSmaller - 0.5;
+  lens.cy = (lens.cy + 0.5) / kSmaller - 0.5;
+  std::vector<cv::Mat3f> radiances;
+  const std::size_t views = std::min(kViews, preset.views.size());
+  for (std::size_t i = 0; i < views; ++i) {
+    const simulate::View& view = preset.views[i * preset.views.size() / views];
+    radiances.push_back(
+        simulate::render_underwater(scene, water, lens, port_of_view(preset, view), view, 1)
+            .radiance);
+  }
+  return simulate::exposure(radiances, balance);
+}
+
+}  // namespace
+
+simulate::AnyWater water_of(const Arguments& a) {
+  if (a.water.find(',') != std::string::npos) return plain_water(a.water);
+  std::optional<double> scattering;
+  if (a.scattering >= 0) scattering = a.scattering;
+  return simulate::SpectralWater{simulate::jerlov_water(a.water, scattering), light_of(a)};
+}
+
+void photograph_with_light(const Arguments& a, const simulate::Preset& preset,
+                           const simulate::LitScene& scene, const simulate::AnyWater& water,
+                           std::uint32_t noise_seed, const std::filesystem::path& folder) {
+  const simulate::Response response = simulate::parse_response(a.response);
+  const cv::Vec3f balance = simulate::white_balance(water);
+  const double bright = std::holds_alternative<simulate::PlainWater>(water)
+                            ? 1
+                            : exposure_of(preset, scene, water, balance);
+  const cv::Vec3f gains = static_cast<float>(bright) * balance;
+  json file = std::visit([](const auto& kind) { return describe(kind); }, water);
+  file["gains"] = {gains[2], gains[1], gains[0]};
+  file["response"] = a.response;
+  io::write_json(folder / "light.json", file);
+  const ProgressSink progress = console_progress("Images (water)");
+  for (std::size_t i = 0; i < preset.views.size(); ++i) {
+    const simulate::View& view = preset.views[i];
+    const simulate::Port port = port_of_view(preset, view);
+    const std::string name = view_name(preset, i);
+    simulate::LitImage image =
+        simulate::render_underwater(scene, water, preset.lens, port, view, a.samples);
+    const cv::Mat3f values = simulate::photograph_of(image.radiance, gains, response);
+    io::write_jpeg(folder / (name + ".jpg"),
+                   simulate::develop(values, a.noise, simulate::noise_key(noise_seed, i, true)),
+                   a.jpeg_quality);
+    if (a.truth) {
+      cv::cvtColor(image.albedo, image.albedo, cv::COLOR_BGR2RGB);
+      io::write_float_tiff(folder / (name + ".albedo.tiff"), image.albedo);
+    }
+    progress(i + 1, preset.views.size());
+  }
+}
+
+}  // namespace axial::apps

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "color/transfer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/error.h"
+#include "base/parse_number.h"
+
+namespace axial::color {
+namespace {
+
+constexpr double kClipped = 0.98;
+
+}  // namespace
+
+Transfer Transfer::parse(std::string_view text) {
+  constexpr std::string_view kGamma = "gamma:";
+  Transfer transfer;
+  if (text == "srgb") return transfer;
+  transfer.gamma_ = 1;
+  if (text == "linear") return transfer;
+  const auto gamma =
+      text.starts_with(kGamma) ? parse_finite<double>(text.substr(kGamma.size())) : std::nullopt;
+  if (!gamma || *gamma < 0.2 || *gamma > 5)
+    fail("curve is '{}', but must be srgb, linear or gamma:G with G from 0.2 to 5", text);
+  transfer.gamma_ = *gamma;
+  return transfer;
+}
+
+float Transfer::light(float value) const {
+  const double v = std::clamp(value, 0.0f, 1.0f);
+  if (gamma_ > 0) return static_cast<float>(std::pow(v, gamma_));
+  return static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+}
+
+float Transfer::value(float light) const {
+  const double l = std::clamp(light, 0.0f, 1.0f);
+  if (gamma_ > 0) return static_cast<float>(std::pow(l, 1 / gamma_));
+  return static_cast<float>(l <= 0.0031308 ? 12.92 * l : 1.055 * std::pow(l, 1 / 2.4) - 0.055);
+}
+
+float Transfer::slope(float value) const {
+  constexpr float kStep = 1e-3f;
+  const float low = std::max(0.0f, value - kStep), high = std::min(1.0f, value + kStep);
+  return std::max(1e-3f, (light(high) - light(low)) / (high - low));
+}
+
+cv::Mat3f light_of(const cv::Mat& pixels, int bits, const Transfer& transfer, bool mark_clipped) {
+  const bool bytes = pixels.depth() == CV_8U;
+  const std::size_t values = std::size_t{1} << (bytes ? 8 : bits);
+  std::vector<float> table(values);
+  for (std::size_t i = 0; i < values; ++i) {
+    const double value = static_cast<double>(i) / static_cast<double>(values - 1);
+    table[i] = mark_clipped && value >= kClipped ? std::numeric_limits<float>::quiet_NaN()
+                                                 : transfer.light(static_cast<float>(value));
+  }
+  cv::Mat3f light(pixels.size());
+  for (int y = 0; y < pixels.rows; ++y)
+    for (int x = 0; x < pixels.cols; ++x)
+      for (int k = 0; k < 3; ++k) {
+        const std::size_t value =
+            bytes ? pixels.at<cv::Vec3b>(y, x)[k] : pixels.at<cv::Vec3w>(y, x)[k];
+        light(y, x)[2 - k] = table[std::min(value, values - 1)];
+      }
+  return light;
+}
+
+}  // namespace axial::color

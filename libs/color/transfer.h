@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From the values of photographs to light, and back.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string_view>
+
+namespace axial::color {
+
+// How a camera maps light to values, both from 0 to 1.
+class Transfer {
+ public:
+  // The curve of sRGB (IEC 61966-2-1).
+  Transfer() = default;
+
+  // "srgb", "linear", or "gamma:G", value = light^(1/G) with G from 0.2 to 5. Throws an Error for
+  // another text.
+  static Transfer parse(std::string_view text);
+
+  float light(float value) const;  // of a value; values outside 0 to 1 are clamped
+  float value(float light) const;  // of light, the inverse of light()
+  float slope(float value) const;  // d(light)/d(value), at least 1e-3
+
+ private:
+  double gamma_ = 0;  // 0: sRGB
+};
+
+// The light of a photograph: R G B, 0 to 1. `pixels`: B G R of 8 or 16 bits. `bits`: of a value of
+// 16 bits (8 to 16). With `mark_clipped`, a channel that is clipped, at 98 % of the largest value
+// or above, is NaN.
+cv::Mat3f light_of(const cv::Mat& pixels, int bits, const Transfer& transfer, bool mark_clipped);
+
+}  // namespace axial::color

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// RestoreColors, with photographs of SimulateUnderwater.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "base/order_statistics.h"
+#include "color/transfer.h"
+#include "io/bytes/json.h"
+#include "io/images/image.h"
+#include "support/program_run.h"
+
+namespace axial::color {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class RestoreColors : public axial::test::ProgramTest {
+ protected:
+  // Photographs under water, and the scene with the true surface.
+  void photograph(const std::string& light) const {
+    succeed_in("SimulateUnderwater",
+               "--preset reef --coarseness 4 --views 8 --width 320 --height 240 --samples 2 "
+               "--medium water -o . " +
+                   light);
+    succeed_in("InterfaceCOLMAP", "-i . --image-folder water --housing housing.json -o scene.mvs");
+  }
+
+  std::string restore(const std::string& options = "") const {
+    return succeed_in("RestoreColors",
+                      "-i scene.mvs -m mesh.ply --refractive -o restored " + options);
+  }
+
+  // The median angle [degrees] between the photographs' light and the surface's true colour, with
+  // known white.
+  double angle(const std::string& photographs) const {
+    std::vector<cv::Vec3f> lights, truths;
+    for (int i = 0; i < 8; ++i) {
+      const std::string name = fmt::format("{:04}", i);
+      cv::Mat light = light_of(io::read_photograph(folder_ / photographs / (name + ".jpg")).pixels,
+                               8, {}, false);
+      cv::Mat truth;
+      cv::cvtColor(
+          cv::imread((folder_ / "water" / (name + ".albedo.tiff")).string(), cv::IMREAD_UNCHANGED),
+          truth, cv::COLOR_BGR2RGB);
+      cv::resize(light, light, {}, 0.125, 0.125, cv::INTER_AREA);
+      cv::resize(truth, truth, light.size(), 0, 0, cv::INTER_AREA);
+      lights.insert(lights.end(), light.begin<cv::Vec3f>(), light.end<cv::Vec3f>());
+      truths.insert(truths.end(), truth.begin<cv::Vec3f>(), truth.end<cv::Vec3f>());
+    }
+    for (int k = 0; k < 3; ++k) {
+      std::vector<float> ratios;
+      for (std::size_t i = 0; i < lights.size(); ++i)
+        ratios.push_back(truths[i][k] / std::max(lights[i][k], 1e-4f));
+      const float gain = upper_median(std::move(ratios));
+      for (cv::Vec3f& light : lights) light[k] *= gain;
+    }
+    std::vector<double> angles;
+    for (std::size_t i = 0; i < lights.size(); ++i)
+      angles.push_back(std::acos(
+          std::min(1.0, lights[i].dot(truths[i]) / (cv::norm(lights[i]) * cv::norm(truths[i])))));
+    return upper_median(std::move(angles)) * 180 / CV_PI;
+  }
+
+  nlohmann::json findings() const { return io::read_json(folder_ / "restored" / "colors.json"); }
+};
+
+TEST_F(RestoreColors, FindsTheCoefficientsOfPlainWater) {
+  photograph("--water 0.9,0.5,0.3,0.8,0.4,0.3,0.05,0.15,0.2");
+  restore("--masks 1");
+  const nlohmann::json found = findings();
+  EXPECT_EQ(found.at("light"), "sun");
+  const std::array<std::pair<const char*, double>, 3> truth{
+      {{"red", 0.9}, {"green", 0.5}, {"blue", 0.3}}};
+  for (const auto& [name, a] : truth) {
+    const nlohmann::json& channel = found.at("channels").at(name);
+    EXPECT_NEAR(channel.at("a_per_m").at("value"), a, 0.08 * a + 0.02) << name;
+    EXPECT_TRUE(channel.at("determined"));
+  }
+  EXPECT_LT(angle("restored"), 0.5 * angle("water"));
+  const cv::Mat mask =
+      cv::imread((folder_ / "restored/masks/0000.jpg.png").string(), cv::IMREAD_UNCHANGED);
+  EXPECT_EQ(mask.size(), cv::Size(320, 240));
+  EXPECT_GT(cv::countNonZero(mask), 0);
+}
+
+TEST_F(RestoreColors, TakesTheLampsOutOfThePhotographs) {
+  photograph("--water II --light lamp");
+  const std::string output = restore();
+  EXPECT_THAT(output, HasSubstr("Light: lamp, by the photographs"));
+  EXPECT_EQ(findings().at("light"), "lamp");
+  EXPECT_LT(findings().at("spread_after"), 0.7 * findings().at("spread_before").get<double>());
+  EXPECT_LT(angle("restored"), 0.7 * angle("water"));
+}
+
+TEST_F(RestoreColors, RefusesWhatIsWrongInOneLine) {
+  photograph("--water 3C");
+  const std::string scene = "-i scene.mvs -m mesh.ply --refractive -v 0 ";
+  expect_refusal("RestoreColors", scene, "no output folder given");
+  expect_refusal("RestoreColors", scene + "-o restored --curve log", "curve is 'log'");
+  expect_refusal("RestoreColors", scene + "-o restored --grey 0000.jpg:1,2,3",
+                 "must be IMAGE:X,Y,WIDTH,HEIGHT");
+  expect_refusal("RestoreColors", scene + "-o restored --grey none.jpg:1,2,3,4",
+                 "no photograph has this name");
+  expect_refusal("RestoreColors", scene + "-o restored --grey 0000.jpg:310,1,30,4",
+                 "lies outside the photograph of 320 x 240 pixels");
+  expect_refusal("RestoreColors", scene + "-o water", "--output");
+  EXPECT_FALSE(fs::exists(folder_ / "restored" / "0000.jpg"));
+}
+
+}  // namespace
+}  // namespace axial::color

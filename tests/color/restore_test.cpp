@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "color/restore.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace axial::color {
+namespace {
+
+SunWater water() {
+  SunWater water;
+  const std::array<double, 3> a{0.6, 0.3, 0.2};
+  for (std::size_t k = 0; k < 3; ++k) {
+    water.channels[k].a.value = a[k];
+    water.channels[k].b.value = 0.3;
+    water.channels[k].veil.value = 0.1;
+    water.channels[k].determined = true;
+  }
+  return water;
+}
+
+CameraModel camera() {
+  CameraModel camera;
+  camera.width = 8;
+  camera.height = 6;
+  return camera;
+}
+
+SightImage sights(float way) {
+  return {cv::Mat1f(6, 8, way), cv::Mat3f(6, 8, cv::Vec3f(0, 0, -1))};
+}
+
+// The light of a surface J (R G B) behind 2 m of water().
+cv::Mat3f light(const Eigen::Array3f& surface) {
+  const Sight sight{{0, 0}, 2, {0, 0, -1}};
+  const Eigen::Array3f seen = surface * water().factor(sight) + water().veil(sight);
+  return cv::Mat3f(6, 8, cv::Vec3f(seen[0], seen[1], seen[2]));
+}
+
+TEST(Restore, GivesTheLightOfTheSurface) {
+  const Eigen::Array3f surface(0.2f, 0.4f, 0.1f);
+  const Restored eight = restore(light(surface), sights(2), camera(), water(), {});
+  const Restored sixteen =
+      restore(light(surface), sights(2), camera(), water(), {Eigen::Array3f::Ones(), {}, 16});
+  ASSERT_EQ(eight.pixels.type(), CV_8UC3);
+  ASSERT_EQ(sixteen.pixels.type(), CV_16UC3);
+  for (int k = 0; k < 3; ++k) {
+    const double value = Transfer().value(surface[k]);
+    EXPECT_NEAR(eight.pixels.at<cv::Vec3b>(3, 4)[2 - k], 255 * value, 0.6);
+    EXPECT_NEAR(sixteen.pixels.at<cv::Vec3w>(3, 4)[2 - k], 65535 * value, 2);
+  }
+  EXPECT_EQ(cv::countNonZero(eight.known), 48);
+}
+
+TEST(Restore, TellsWhatIsNotKnown) {
+  cv::Mat3f image = light({0.2f, 0.4f, 0.1f});
+  image(1, 1)[0] = std::numeric_limits<float>::quiet_NaN();  // clipped
+  SightImage seen = sights(2);
+  seen.way(2, 5) = 0;
+  const Restored restored = restore(image, seen, camera(), water(), {});
+  EXPECT_EQ(restored.known(1, 1), 0);
+  EXPECT_EQ(restored.known(2, 5), 0);
+  EXPECT_EQ(cv::countNonZero(restored.known), 46);
+  // A pixel without surface is restored as its neighbours are.
+  EXPECT_EQ(restored.pixels.at<cv::Vec3b>(2, 5), restored.pixels.at<cv::Vec3b>(2, 4));
+  // After 10 m, a four-hundredth of the red light is left: one grey level.
+  EXPECT_EQ(cv::countNonZero(restore(image, sights(10), camera(), water(), {}).known), 0);
+}
+
+TEST(Restore, ChannelsThatAreNotDeterminedStay) {
+  SunWater half = water();
+  half.channels[0].determined = false;
+  const cv::Mat3f image = light({0.2f, 0.4f, 0.1f});
+  const Restored restored = restore(image, sights(2), camera(), half, {});
+  EXPECT_NEAR(restored.pixels.at<cv::Vec3b>(0, 0)[2], 255 * Transfer().value(image(0, 0)[0]), 0.6);
+  EXPECT_NEAR(restored.pixels.at<cv::Vec3b>(0, 0)[1], 255 * Transfer().value(0.4f), 0.6);
+}
+
+TEST(FillSights, TakesTheNearestAndKeepsTheOthers) {
+  SightImage seen = sights(0);
+  seen.way(0, 0) = 1;
+  seen.way(5, 7) = 3;
+  fill_sights(seen);
+  EXPECT_EQ(seen.way(0, 0), 1);
+  EXPECT_EQ(seen.way(5, 7), 3);
+  EXPECT_EQ(seen.way(0, 1), 1);
+  EXPECT_EQ(seen.way(5, 6), 3);
+  for (const float way : seen.way) EXPECT_GT(way, 0);
+  SightImage none = sights(0);
+  fill_sights(none);
+  EXPECT_EQ(cv::countNonZero(none.way), 0);
+}
+
+}  // namespace
+}  // namespace axial::color
