@@ -166,9 +166,11 @@ std::vector<SeenSurface::Point> SeenSurface::points_in(const geometry::PosedCame
 
 // What a camera sees of the points, in their order.
 template <class Camera>
-std::vector<Observation> SeenSurface::observed(
-    const Camera& camera, const geometry::PosedCamera& posed, std::span<const Point> points,
-    const LightPyramid& light, const ObserveOptions& options, double width) const {
+std::vector<Observation> SeenSurface::observed(const Camera& camera,
+                                               const geometry::PosedCamera& posed,
+                                               std::span<const Point> points,
+                                               const LightPyramid& light,
+                                               const ObserveOptions& options, double width) const {
   std::vector<Observation> found(points.size());
   std::vector<char> is_seen(points.size(), 0);
   parallel_for(

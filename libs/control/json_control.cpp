@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-std::array<Eigen::Vector2d, 4> corners_of(const Entry& entry) {
+std::array<Eigen::Vector2d, 4> corners_of(const io::Entry& entry) {
   constexpr const char* kExpected = "four lists of x, y and sigma";
   const json* value = entry.find("corners");
   if (!value->is_array() || value->size() != 4) entry.refuse("corners", kExpected);
@@ -24,14 +24,14 @@ std::array<Eigen::Vector2d, 4> corners_of(const Entry& entry) {
     const json& corner = (*value)[i];
     if (!corner.is_array() || corner.size() < 2) entry.refuse("corners", kExpected);
     for (std::size_t k = 0; k < 2; ++k) {
-      if (!is_finite_number(corner[k])) entry.refuse("corners", kExpected);
+      if (!io::is_finite_number(corner[k])) entry.refuse("corners", kExpected);
       corners[i][static_cast<Eigen::Index>(k)] = corner[k].get<double>();
     }
   }
   return corners;
 }
 
-TargetImage image_of(const Entry& entry) {
+TargetImage image_of(const io::Entry& entry) {
   TargetImage image;
   image.label = entry.text("label");
   image.image = entry.text("image");
@@ -47,7 +47,7 @@ TargetImage image_of(const Entry& entry) {
   return image;
 }
 
-Eigen::Vector3d sigma_of(const Entry& entry) {
+Eigen::Vector3d sigma_of(const io::Entry& entry) {
   const json* value = entry.find("sigma");
   if (value && value->is_array()) {
     const auto list = entry.numbers("sigma", 3, "a number, or three");
@@ -56,7 +56,7 @@ Eigen::Vector3d sigma_of(const Entry& entry) {
   return Eigen::Vector3d::Constant(entry.number_or("sigma", 0));
 }
 
-StatedPoint point_of(const Entry& entry) {
+StatedPoint point_of(const io::Entry& entry) {
   entry.require_known(
       {"label", "x", "y", "z", "longitude", "latitude", "height", "depth", "sigma", "check"});
   StatedPoint point;
@@ -80,7 +80,7 @@ StatedPoint point_of(const Entry& entry) {
   return point;
 }
 
-Bar bar_of(const Entry& entry) {
+Bar bar_of(const io::Entry& entry) {
   entry.require_known({"targets", "length", "sigma", "check"});
   const json* targets = entry.find("targets");
   if (!targets || !targets->is_array() || targets->size() != 2 || !(*targets)[0].is_string() ||
@@ -95,7 +95,7 @@ Bar bar_of(const Entry& entry) {
 }
 
 // Nothing, or whether all coordinates are degrees.
-void note_degrees(const Entry& entry, std::optional<bool>& degrees) {
+void note_degrees(const io::Entry& entry, std::optional<bool>& degrees) {
   const bool here = entry.has("longitude") || entry.has("latitude");
   const bool metres = entry.has("x") || entry.has("y");
   if (!here && !metres) return;
@@ -113,21 +113,21 @@ Control read_json_control(const std::string& text, const std::filesystem::path& 
   if (!content.contains("targets") && !content.contains("points") && !content.contains("bars"))
     fail_in(name, "has no targets, no points and no bars");
   Control control;
-  for_each_entry(content, name, "targets",
-                 [&](const Entry& entry) { control.images.push_back(image_of(entry)); });
+  io::for_each_entry(content, name, "targets",
+                     [&](const io::Entry& entry) { control.images.push_back(image_of(entry)); });
   StatedPoints stated;
   std::optional<bool> degrees;
-  for_each_entry(content, name, "points", [&](const Entry& entry) {
+  io::for_each_entry(content, name, "points", [&](const io::Entry& entry) {
     note_degrees(entry, degrees);
     stated.points.push_back(point_of(entry));
   });
   stated.degrees = degrees.value_or(false);
-  const Entry whole{content, name + ": control"};
+  const io::Entry whole{content, name + ": control"};
   if (whole.has("crs")) stated.crs = whole.text("crs");
   stated.crs_where = name + ": crs";
   add_points(std::move(stated), file, options, control);
-  for_each_entry(content, name, "bars",
-                 [&](const Entry& entry) { add_bar(bar_of(entry), options, control); });
+  io::for_each_entry(content, name, "bars",
+                     [&](const io::Entry& entry) { add_bar(bar_of(entry), options, control); });
   return control;
 }
 

@@ -25,7 +25,7 @@ const json& list_at(const json& content, const char* key, const std::string& nam
   return *found;
 }
 
-TargetPlace place_of(const Entry& entry) {
+TargetPlace place_of(const io::Entry& entry) {
   TargetPlace place;
   place.label = entry.text("label");
   place.world = {entry.number("x"), entry.number("y"), entry.number("z")};
@@ -38,7 +38,7 @@ TargetPlace place_of(const Entry& entry) {
 
 double covariance_at(const json& value, const std::string& where) {
   if (value.is_null()) return kInfinite;
-  if (!is_finite_number(value))
+  if (!io::is_finite_number(value))
     fail("{} is {}, but must be a finite number", where, io::to_text(value));
   return value.get<double>();
 }
@@ -92,7 +92,7 @@ TargetPlaces read_target_places(const std::filesystem::path& file) {
   const json& rows = list_at(content, "covariance_m2", name);
   TargetPlaces places;
   std::map<std::string, std::string> known;
-  for_each_entry(content, name, "targets", [&](const Entry& entry) {
+  io::for_each_entry(content, name, "targets", [&](const io::Entry& entry) {
     places.targets.push_back(place_of(entry));
     const std::string& label = places.targets.back().label;
     const auto [before, is_new] = known.emplace(label_key(label), label);

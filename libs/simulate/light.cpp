@@ -125,9 +125,8 @@ Spectrum LightOfView::veil(const Eigen::Vector3d& start, const Eigen::Vector3d& 
     const double way = (i + 0.5) * step;
     const Eigen::Vector3d point = start + way * direction;
     const auto depth = static_cast<float>(sun_.depth - point.z());
-    const Spectrum here = lamps_.empty()
-                              ? Spectrum(even * (-water_.daylight_loss * depth).exp())
-                              : scattered_lamps(point, direction);
+    const Spectrum here = lamps_.empty() ? Spectrum(even * (-water_.daylight_loss * depth).exp())
+                                         : scattered_lamps(point, direction);
     sum += here * (-water_.loss() * static_cast<float>(way)).exp();
   }
   return source_ * rate * sum * static_cast<float>(step);
