@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gives photographs the colours that they have without water.
 
+#include <algorithm>
+#include <functional>
+
 #include "base/atomic_file.h"
 #include "base/context.h"
 #include "base/error.h"
 #include "base/naming.h"
-#include "base/same_file.h"
+#include "base/output_lock.h"
 #include "belong/surface_check.h"
+#include "geometry/seen_part.h"
 #include "io/openmvs/point_source.h"
+#include "io/textured/textured_mesh.h"
 #include "options.h"
 #include "photographs.h"
 #include "report.h"
@@ -25,6 +30,21 @@ Mesh read_mesh(const Settings& settings, const LocalFrame& frame, const Context&
   return mesh;
 }
 
+// The memory to fit both models, for each observation.
+constexpr std::uint64_t kBytesToFit = 700;
+
+// Says what the numbers are based on, where this may be wrong.
+void check_scene(const Settings& settings, const survey::Survey& survey, const Mesh& mesh,
+                 const Context& context) {
+  geometry::warn_if_inside_out(
+      geometry::find_seen_part(mesh, survey::posed_cameras(survey), {.strays = false}),
+      settings.mesh, context);
+  if (std::ranges::none_of(survey.views,
+                           [](const survey::View& view) { return view.camera.port.has_value(); }))
+    context.warning("{}: no camera is behind a port; lengths are taken for metres",
+                    survey.file().string());
+}
+
 color::Choice fit(const Settings& settings, const color::Observations& observations) {
   if (!settings.light) return color::choose_light(observations, settings.transfer);
   color::Choice choice;
@@ -40,11 +60,16 @@ Findings find(const Settings& settings, const survey::Survey& survey,
               const color::SeenSurface& surface, const Context& context) {
   const color::Observations observations = surface.observe(
       survey::posed_cameras(survey),
-      [&](std::size_t view) { return read_light(survey, view, settings.transfer); },
+      [&](std::size_t view) {
+        PhotographLight photograph = read_light(survey, view, settings.transfer);
+        color::mark_unusable(photograph.light, photograph.mask, settings.transfer);
+        return photograph.light;
+      },
       settings.observe, context);
   if (observations.points() < 100)
     fail_in(settings.mesh, "only {} points of the mesh are in two photographs or more: must be 100",
             observations.points());
+  context.memory().require(observations.all.size() * kBytesToFit, "comparing colours");
   Findings findings;
   findings.choice = fit(settings, observations);
   findings.light_given = settings.light.has_value();
@@ -52,6 +77,11 @@ Findings find(const Settings& settings, const survey::Survey& survey,
   findings.observations = observations.all.size();
   findings.raw_spread = color::spread_of(observations, nullptr);
   findings.spread = color::spread_of(observations, &findings.choice.model);
+  if (std::ranges::none_of(color::determined(findings.choice.model), std::identity()))
+    fail_in(
+        settings.mesh,
+        "the photographs determine the loss of no channel: they show the same points from equal "
+        "distances, or too few points of the mesh");
   findings.gain = color::grey_world(observations, findings.choice.model);
   return findings;
 }
@@ -62,15 +92,19 @@ int run(int argc, char** argv) {
   const Settings& settings = options.settings;
   const Context context = program_context(options.parsed);
   require_writable_folder(settings.output);
+  const OutputLock lock = lock_output(settings.output);
   survey::Survey survey = survey::open_scene(settings.survey, context);
   const Mesh mesh = read_mesh(settings, survey.frame, context);
   belong::check_surface(survey.scene, belong::shape_of(mesh), {settings.mesh, survey.file()},
                         context);
   survey::find_photographs(survey, context);
-  for (const std::filesystem::path& name : output_names(survey))
-    require_not_an_input(settings.output / name, survey.inputs, "--output");
+  survey.add_inputs(io::files_of_mesh(settings.mesh));
+  const OutputNames names = output_names(settings, survey);
+  check_outputs(settings, survey, names);
   if (settings.grey) view_of_grey(*settings.grey, survey);
-  context.memory().require(color::bytes_to_see(mesh) + bytes_to_restore(survey), "the photographs");
+  context.memory().require(color::bytes_to_see(mesh) + bytes_to_restore(survey),
+                           "restoring photographs");
+  check_scene(settings, survey, mesh, context);
   const color::SeenSurface surface(mesh);
   Findings findings = find(settings, survey, surface, context);
   if (settings.grey) {
@@ -80,7 +114,7 @@ int run(int argc, char** argv) {
   log_findings(findings, context);
   write_folder(settings.output, [&](const std::filesystem::path& staging) {
     findings.known = write_restored(settings, survey, surface, findings.choice.model, findings.gain,
-                                    staging, context);
+                                    names, staging, context);
     write_findings(staging, findings);
   });
   log_info("{} photographs without water in {}", survey.views.size(), settings.output.string());

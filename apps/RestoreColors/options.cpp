@@ -19,6 +19,7 @@ namespace {
 
 // The values of the command line before they are checked and converted.
 struct Raw {
+  int ignore_mask_label = -1;
   std::string input, light = "auto", curve = "srgb", grey;
   io::SceneOptions scene;
 };
@@ -30,12 +31,12 @@ GreyPatch grey_of(const std::string& text) {
   std::size_t count = 0;
   if (colon != std::string::npos)
     for (const std::string_view word : split(std::string_view(text).substr(colon + 1), ',')) {
-      const auto number = parse_finite<double>(word);
-      if (!number || *number < 0 || *number > 1e6 || count == numbers.size()) {
+      const auto number = parse_number<int>(word);
+      if (!number || *number < 0 || *number > 1000000 || count == numbers.size()) {
         count = 0;
         break;
       }
-      numbers[count++] = static_cast<int>(*number);
+      numbers[count++] = *number;
     }
   grey.part = {numbers[0], numbers[1], numbers[2], numbers[3]};
   if (count != numbers.size() || grey.part.empty() || grey.image.empty())
@@ -64,7 +65,16 @@ void declare(OptionList& list, Raw& raw, Settings& settings) {
       .add_with_default("jpeg-quality", &settings.jpeg_quality, "JPEG quality, 1 to 100")
       .range(1, 100)
       .add_with_default("masks", &settings.masks,
-                        "also write masks/, with 0 for pixels whose colour is not determined");
+                        "also write masks/, with 0 for pixels whose colour is not determined")
+      .add_with_default(
+          "ignore-mask-label", &raw.ignore_mask_label,
+          "mask value to leave out; -1: no masks, but the black borders that undistortion leaves "
+          "are left out (default with --mask-path: 0); -2: all pixels are used")
+      .range(-2, 65535)
+      .add("mask-path", &settings.survey.mask_folder,
+           "folder with a mask for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
+           "a.jpg, in the same subfolders as the images")
+      .sets("mask_folder");
   io::declare_bit_depth(list, settings.survey.bit_depth);
   io::declare_scene_options(list, raw.scene);
 }
@@ -78,7 +88,9 @@ void convert(const Raw& raw, Options& options) {
   if (raw.light == "lamp") settings.light = color::Light::lamp;
   settings.transfer = color::Transfer::parse(raw.curve);
   if (!raw.grey.empty()) settings.grey = grey_of(raw.grey);
-  settings.survey.has_masks = false;
+  const bool masks_given =
+      !settings.survey.mask_folder.empty() && !given(options.parsed, "ignore-mask-label");
+  use_mask_label(settings.survey, masks_given ? 0 : raw.ignore_mask_label);
 }
 
 }  // namespace

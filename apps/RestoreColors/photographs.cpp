@@ -7,7 +7,9 @@
 #include "base/context.h"
 #include "base/error.h"
 #include "base/file_extension.h"
+#include "base/same_file.h"
 #include "io/images/image.h"
+#include "survey/photographs.h"
 
 namespace axial::apps {
 namespace {
@@ -39,42 +41,57 @@ geometry::PosedCamera posed(const survey::View& view) {
 
 }  // namespace
 
-cv::Mat3f read_light(const survey::Survey& survey, std::size_t view,
-                     const color::Transfer& transfer) {
-  return color::light_of(io::read_photograph(survey.views[view].file).pixels, survey.bit_depth,
-                         transfer, true);
+PhotographLight read_light(const survey::Survey& survey, std::size_t view,
+                           const color::Transfer& transfer) {
+  const survey::View& of = survey.views[view];
+  const io::Photograph photograph = io::read_photograph(of.file);
+  return {color::light_of(photograph.pixels, survey.bit_depth, transfer),
+          survey::working_mask(of, photograph.opaque, survey.options.ignore_mask_label)};
 }
 
-std::vector<fs::path> output_names(const survey::Survey& survey) {
+OutputNames output_names(const Settings& settings, const survey::Survey& survey) {
   const fs::path folder = common_folder(survey);
-  std::vector<fs::path> names;
+  OutputNames names;
   for (const survey::View& view : survey.views) {
     fs::path name = view.file.lexically_relative(folder);
-    if (!is_jpeg_name(name)) name.replace_extension(".png");
-    names.push_back(std::move(name));
+    if (!is_jpeg_name(name) && lower_extension(name) != ".png") name.replace_extension(".png");
+    if (settings.masks) names.masks.push_back(fs::path("masks") / (name.string() + ".png"));
+    names.photographs.push_back(std::move(name));
   }
   return names;
 }
 
+void check_outputs(const Settings& settings, const survey::Survey& survey,
+                   const OutputNames& names) {
+  const std::string option = "--output";
+  std::vector<NamedOutput> outputs{{option, settings.output / "colors.json"}};
+  for (const auto* list : {&names.photographs, &names.masks})
+    for (const fs::path& name : *list) outputs.push_back({option, settings.output / name});
+  require_different(outputs);
+  for (const NamedOutput& output : outputs)
+    require_not_an_input(output.path, survey.inputs, option);
+}
+
 double write_restored(const Settings& settings, const survey::Survey& survey,
                       const color::SeenSurface& surface, const color::WaterModel& model,
-                      const Eigen::Array3f& gain, const fs::path& folder, const Context& context) {
-  const std::vector<fs::path> names = output_names(survey);
+                      const Eigen::Array3f& gain, const OutputNames& names, const fs::path& folder,
+                      const Context& context) {
   ProgressCounter progress(context.stage("Restoring photographs"), survey.views.size());
   double known = 0, all = 0;
   for (std::size_t i = 0; i < survey.views.size(); ++i) {
     const survey::View& view = survey.views[i];
+    const PhotographLight photograph = read_light(survey, i, settings.transfer);
     const color::Restored restored =
-        color::restore(read_light(survey, i, settings.transfer), surface.sights(posed(view)),
-                       view.camera, model, rendering_of(settings, view, gain));
-    const fs::path file = folder / names[i];
+        color::restore(photograph.light, photograph.mask, surface.sights(posed(view)), view.camera,
+                       model, rendering_of(settings, view, gain));
+    const fs::path file = folder / names.photographs[i];
     make_folder(file.parent_path());
     if (is_jpeg_name(file))
       io::write_jpeg(file, restored.pixels, settings.jpeg_quality);
     else
       io::write_png(file, restored.pixels);
     if (settings.masks) {
-      const fs::path mask = folder / "masks" / (names[i].string() + ".png");
+      const fs::path mask = folder / names.masks[i];
       make_folder(mask.parent_path());
       io::write_png(mask, restored.known);
     }
@@ -86,10 +103,14 @@ double write_restored(const Settings& settings, const survey::Survey& survey,
 }
 
 std::size_t view_of_grey(const GreyPatch& grey, const survey::Survey& survey) {
-  const auto found = std::ranges::find_if(survey.views, [&](const survey::View& view) {
-    return view.file.string().ends_with(grey.image);
-  });
+  const auto has_name = [&](const survey::View& view) {
+    const std::string path = view.file.generic_string();
+    return path == grey.image || path.ends_with("/" + grey.image);
+  };
+  const auto found = std::ranges::find_if(survey.views, has_name);
   if (found == survey.views.end()) fail("--grey {}: no photograph has this name", grey.image);
+  if (std::ranges::count_if(survey.views, has_name) > 1)
+    fail("--grey {}: several photographs have this name; give a folder, too", grey.image);
   const cv::Rect all(0, 0, found->camera.width, found->camera.height);
   if ((grey.part & all) != grey.part)
     fail("--grey {}: the part lies outside the photograph of {} x {} pixels", grey.image, all.width,
@@ -112,7 +133,9 @@ Eigen::Array3f grey_gain(const Settings& settings, const survey::Survey& survey,
   const GreyPatch& grey = *settings.grey;
   const std::size_t index = view_of_grey(grey, survey);
   const survey::View& view = survey.views[index];
-  const cv::Mat3f light = read_light(survey, index, settings.transfer);
+  PhotographLight photograph = read_light(survey, index, settings.transfer);
+  color::mark_unusable(photograph.light, photograph.mask, settings.transfer);
+  const cv::Mat3f& light = photograph.light;
   const color::SightImage sights = surface.sights(posed(view));
   Eigen::Array3f sum = Eigen::Array3f::Zero();
   int count = 0;

@@ -146,7 +146,14 @@ void check(const Arguments& a, const ParsedOptions& parsed) {
   if (a.truth_only && !a.truth) fail("--truth-only contradicts --truth 0");
   for (const char* of_water : {"light", "depth", "scattering", "response"})
     if (given(parsed, of_water) && a.water.empty()) fail("--{} needs --water", of_water);
-  for (const char* without : {"haze", "water-level", "truth-only"})
+  const bool plain = a.water.find(',') != std::string::npos;
+  for (const char* of_spectrum : {"light", "depth", "scattering"})
+    if (given(parsed, of_spectrum) && plain)
+      fail("--{} contradicts --water with nine numbers", of_spectrum);
+  if (given(parsed, "depth") && a.light != "sun") fail("--depth contradicts --light {}", a.light);
+  if (!a.water.empty() && a.preset.name.ends_with("-hazy"))
+    fail("--preset {} contradicts --water", a.preset.name);
+  for (const char* without : {"haze", "water-level", "truth-only", "rig-base"})
     if (given(parsed, without) && !a.water.empty()) fail("--{} contradicts --water", without);
   if (!a.water.empty() && a.medium == "air") fail("--water contradicts --medium air");
   if (a.output.empty()) fail("no output folder given (-o DIR)");

@@ -23,7 +23,9 @@ simulate::PlainWater plain_water(const std::string& text) {
   std::vector<float> numbers;
   for (const std::string_view word : split(text, ',')) {
     const auto number = parse_finite<double>(word);
-    if (!number || *number < 0) fail("--water {}: '{}' is not a number of at least 0", text, word);
+    const double most = numbers.size() < 6 ? 20 : 1;
+    if (!number || *number < 0 || *number > most)
+      fail("--water {}: '{}' is not a number from 0 to {}", text, word, most);
     numbers.push_back(static_cast<float>(*number));
   }
   if (numbers.size() != kNumbers)
@@ -46,7 +48,7 @@ std::vector<simulate::Lamp> read_lamps(const std::filesystem::path& path) {
     lamp.direction.normalize();
     lamp.half_angle = simulate::kRadians * entry.number_or("half_angle_degrees", 40);
     lamp.power = entry.number_or("power", 1);
-    if (!(lamp.half_angle > 0 && lamp.half_angle < 3))
+    if (!(lamp.half_angle > 0 && lamp.half_angle < 170 * simulate::kRadians))
       entry.refuse("half_angle_degrees", "between 0 and 170");
     if (!(lamp.power > 0)) entry.refuse("power", "above 0");
     lamps.push_back(lamp);
@@ -55,14 +57,14 @@ std::vector<simulate::Lamp> read_lamps(const std::filesystem::path& path) {
   return lamps;
 }
 
-simulate::Light light_of(const Arguments& a) {
+simulate::Light light_of(const Arguments& a, const CommonOptions& common) {
   simulate::Light light;
   light.sun.depth = a.depth;
   constexpr std::string_view kFile = "lamp:";
   if (a.light == "lamp")
     light.lamps = simulate::usual_lamps();
   else if (a.light.starts_with(kFile))
-    light.lamps = read_lamps(a.light.substr(kFile.size()));
+    light.lamps = read_lamps(in_working_folder(common, a.light.substr(kFile.size())));
   else if (a.light != "sun")
     fail("--light is '{}', but must be sun, lamp or lamp:FILE", a.light);
   return light;
@@ -133,11 +135,24 @@ double exposure_of(const simulate::Preset& preset, const simulate::LitScene& sce
 
 }  // namespace
 
-simulate::AnyWater water_of(const Arguments& a) {
+simulate::AnyWater water_of(const Arguments& a, const CommonOptions& common) {
   if (a.water.find(',') != std::string::npos) return plain_water(a.water);
   std::optional<double> scattering;
   if (a.scattering >= 0) scattering = a.scattering;
-  return simulate::SpectralWater{simulate::jerlov_water(a.water, scattering), light_of(a)};
+  return simulate::SpectralWater{simulate::jerlov_water(a.water, scattering), light_of(a, common)};
+}
+
+void check_depth(const simulate::AnyWater& water, const simulate::Preset& preset,
+                 const simulate::TriangleMesh& mesh) {
+  const auto* spectral = std::get_if<simulate::SpectralWater>(&water);
+  if (!spectral || !spectral->light.lamps.empty()) return;
+  double highest = -1e9;
+  for (const simulate::View& view : preset.views) highest = std::max(highest, view.centre.z());
+  for (const Eigen::Vector3f& vertex : mesh.vertices)
+    highest = std::max(highest, static_cast<double>(vertex.z()));
+  if (spectral->light.sun.depth <= highest)
+    fail("--depth {}: must be above {:.2f} m, the height of the highest camera or ground",
+         spectral->light.sun.depth, highest);
 }
 
 void photograph_with_light(const Arguments& a, const simulate::Preset& preset,

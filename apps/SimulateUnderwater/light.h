@@ -12,7 +12,11 @@ namespace axial::apps {
 
 // The water and light that --water, --light, --depth and --scattering name. Error for an unknown
 // type, for a wrong number, and for a file of lamps that cannot be read.
-simulate::AnyWater water_of(const Arguments& a);
+simulate::AnyWater water_of(const Arguments& a, const CommonOptions& common);
+
+// Error if cameras or ground are above the water's surface of daylight.
+void check_depth(const simulate::AnyWater& water, const simulate::Preset& preset,
+                 const simulate::TriangleMesh& mesh);
 
 // Renders all views in `water` into `folder`: photographs, <name>.albedo.tiff with the surface's
 // linear colours (R G B) in white light, and light.json (docs/formats.md, "Simulated light").

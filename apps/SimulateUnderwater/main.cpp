@@ -64,6 +64,7 @@ void simulate_scene(const Arguments& a, const simulate::Preset& preset,
   make_folder(folder);
   simulate::TriangleMesh mesh = simulate::terrain_mesh(preset.terrain);
   check_submerged(preset, mesh);
+  if (water) check_depth(*water, preset, mesh);
   const auto first_plate_face = static_cast<std::uint32_t>(mesh.faces.size());
   const PlatesOnGround plates = plates_of(a, preset, mesh);
   append(mesh, simulate::plate_mesh(plates.plates));
@@ -105,7 +106,7 @@ int run(int argc, char** argv) {
   simulate::check_ports(preset);
   if (given(parsed, "rig-base")) simulate::add_second_camera(preset, arguments.second_camera);
   std::optional<simulate::AnyWater> water;
-  if (!arguments.water.empty()) water = water_of(arguments);
+  if (!arguments.water.empty()) water = water_of(arguments, parsed.common);
   simulate_scene(arguments, preset, water, arguments.output);
   return 0;
 }

@@ -65,7 +65,7 @@ double weigh(Channel& channel, std::span<const double> residuals) {
   std::vector<double> sizes(residuals.size());
   for (std::size_t i = 0; i < sizes.size(); ++i)
     sizes[i] = std::abs(residuals[i]) / channel.sigma[i];
-  const double scale = std::max(1.4826 * upper_median(sizes), 1e-9);
+  const double scale = std::max(kSigmasOfMedian * upper_median(sizes), 1e-9);
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     const double size = sizes[i] / (kTuning * scale);
     channel.weight[i] = 1 / ((1 + size * size) * channel.sigma[i] * channel.sigma[i]);

@@ -205,10 +205,8 @@ class LampFit {
       surfaces.push_back(surface_of(point, unknowns_));
     }
     const double sigma = result_.residual * upper_median(std::move(sigmas));
-    const double middle = upper_median(surfaces);
-    for (double& surface : surfaces) surface = std::abs(surface - middle);
-    const double contrast = 1.4826 * upper_median(std::move(surfaces));
-    return sigma <= kLeastPrecise * kMeanSurface && contrast >= 2 * sigma;
+    return sigma <= kLeastPrecise * kMeanSurface &&
+           robust_deviation(std::move(surfaces)) >= 2 * sigma;
   }
 
   void expect_errors() {

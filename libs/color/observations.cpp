@@ -67,9 +67,11 @@ class LightPyramid {
 
   Sample at(std::size_t level, const Eigen::Vector2d& pixel) const {
     const cv::Mat3f& image = levels_[level];
-    const double scale = std::exp2(-static_cast<double>(level));
-    const double px = std::clamp((pixel.x() + 0.5) * scale - 0.5, 0.0, image.cols - 1.001);
-    const double py = std::clamp((pixel.y() + 0.5) * scale - 0.5, 0.0, image.rows - 1.001);
+    // Sides of odd lengths are not halved exactly.
+    const double across = static_cast<double>(image.cols) / levels_[0].cols;
+    const double down = static_cast<double>(image.rows) / levels_[0].rows;
+    const double px = std::clamp((pixel.x() + 0.5) * across - 0.5, 0.0, image.cols - 1.001);
+    const double py = std::clamp((pixel.y() + 0.5) * down - 0.5, 0.0, image.rows - 1.001);
     const int x = static_cast<int>(px), y = static_cast<int>(py);
     const auto a = static_cast<float>(px - x), b = static_cast<float>(py - y);
     const auto corner = [&](int i, int j) {
@@ -131,7 +133,7 @@ SeenSurface::SeenSurface(const Mesh& mesh)
 std::optional<SeenSurface::Point> SeenSurface::on_ray(const Eigen::Vector3d& start,
                                                       const Eigen::Vector3d& direction) const {
   const auto hit = surface_.first_hit(start, direction);
-  if (!hit) return std::nullopt;
+  if (!hit || (!mesh_.unseen.empty() && mesh_.unseen[hit->face] != 0)) return std::nullopt;
   const auto& [a, b, c] = mesh_.faces[hit->face];
   const auto between = [&](const std::vector<Eigen::Vector3f>& of) -> Eigen::Vector3f {
     return (1 - hit->u - hit->v) * of[a] + hit->u * of[b] + hit->v * of[c];
@@ -203,6 +205,7 @@ std::vector<Observation> SeenSurface::observed(const Camera& camera,
 Observations SeenSurface::observe(std::span<const geometry::PosedCamera> cameras,
                                   const LightSource& lights, const ObserveOptions& options,
                                   const Context& context) const {
+  if (cameras.empty()) return {};
   std::vector<Point> points;
   std::vector<double> ways;
   for (const geometry::PosedCamera& posed : cameras) {

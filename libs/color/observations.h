@@ -45,7 +45,7 @@ struct Observations {
   }
 };
 
-// Returns the light (R G B, as light_of() returns it) of a photograph, of the size of its camera.
+// Returns the light of a photograph (R G B, marked by mark_unusable()), of the size of its camera.
 using LightSource = std::function<cv::Mat3f(std::size_t view)>;
 
 struct ObserveOptions {
@@ -58,8 +58,8 @@ struct ObserveOptions {
   double window = 6;
 };
 
-// Where each pixel of a camera sees the surface. `way` is 0 where the pixel has no ray or the ray
-// meets no face.
+// Where each pixel of a camera sees the surface. `way` is 0 where the ray meets no face, or a face
+// that no camera sees (Mesh::unseen).
 struct SightImage {
   cv::Mat1f way;
   cv::Mat3f normal;

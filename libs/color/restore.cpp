@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "base/order_statistics.h"
@@ -37,7 +38,7 @@ Observations half_of(const Observations& all, std::size_t first) {
   return half;
 }
 
-// The factor below which nothing can be restored: less than a thousandth of the light is left.
+// The factor below which light stays as it is: less than a thousandth of it is left.
 constexpr float kLeastFactor = 1e-3f;
 
 // Halves `way` and `normal`, and counts only pixels with a way.
@@ -62,6 +63,7 @@ SightImage halved(const SightImage& sights) {
 }
 
 std::uint16_t rounded(float value, int largest) {
+  if (!(value > 0)) return 0;
   return static_cast<std::uint16_t>(value * static_cast<float>(largest) + 0.5f);
 }
 
@@ -73,8 +75,8 @@ Eigen::Array3f surface_light(const WaterModel& model, const Sight& sight,
   const std::array<bool, 3> known = determined(model);
   Eigen::Array3f surface = light;
   for (int k = 0; k < 3; ++k)
-    if (known[static_cast<std::size_t>(k)])
-      surface[k] = (light[k] - loss.veil[k]) / std::max(loss.factor[k], kLeastFactor);
+    if (known[static_cast<std::size_t>(k)] && loss.factor[k] >= kLeastFactor)
+      surface[k] = (light[k] - loss.veil[k]) / loss.factor[k];
   return surface;
 }
 
@@ -89,30 +91,31 @@ std::array<bool, 3> determined(const WaterModel& model) {
 }
 
 double spread_of(const Observations& observations, const WaterModel* model) {
-  double ratio = 0;
+  double sum_of_ratios = 0;
+  int channels = 0;
   for (int k = 0; k < 3; ++k) {
-    std::vector<float> means, spreads;
+    std::vector<double> means, spreads;
     for (std::size_t point = 0; point < observations.points(); ++point) {
-      float sum = 0, squares = 0;
+      double sum = 0, squares = 0;
       const auto seen = observations.of(point);
       for (const Observation& one : seen) {
-        const float light = model ? surface_light(*model, one.sight, one.light)[k] : one.light[k];
+        const double light = model ? surface_light(*model, one.sight, one.light)[k] : one.light[k];
         sum += light;
         squares += light * light;
       }
-      const auto count = static_cast<float>(seen.size());
-      const float mean = sum / count;
+      const auto count = static_cast<double>(seen.size());
+      const double mean = sum / count;
       if (!std::isfinite(mean)) continue;
       means.push_back(mean);
       spreads.push_back(
-          std::sqrt(std::max(0.0f, squares / count - mean * mean) * count / (count - 1)));
+          std::sqrt(std::max(0.0, squares / count - mean * mean) * count / (count - 1)));
     }
-    const float middle = upper_median(means);
-    for (float& mean : means) mean = std::abs(mean - middle);
-    ratio += upper_median(std::move(spreads)) /
-             (1.4826f * std::max(upper_median(std::move(means)), 1e-6f)) / 3;
+    const double contrast = robust_deviation(std::move(means));
+    if (!(contrast > 0)) continue;
+    sum_of_ratios += upper_median(std::move(spreads)) / contrast;
+    ++channels;
   }
-  return ratio;
+  return channels == 0 ? std::numeric_limits<double>::infinity() : sum_of_ratios / channels;
 }
 
 Choice choose_light(const Observations& observations, const Transfer& transfer) {
@@ -146,27 +149,30 @@ void fill_sights(SightImage& sights) {
 Eigen::Array3f grey_world(const Observations& observations, const WaterModel& model) {
   constexpr float kBrightest = 0.7f;
   constexpr double kShare = 0.99;
-  std::array<std::vector<float>, 3> surfaces;
-  for (const Observation& seen : observations.all) {
-    const Eigen::Array3f light = surface_light(model, seen.sight, seen.light);
-    if (!light.isFinite().all()) continue;
-    for (int k = 0; k < 3; ++k) surfaces[static_cast<std::size_t>(k)].push_back(light[k]);
-  }
+  const std::array<bool, 3> known = determined(model);
   Eigen::Array3f gain = Eigen::Array3f::Ones();
-  if (surfaces[0].empty()) return gain;
   float brightest = 0;
   for (int k = 0; k < 3; ++k) {
-    const auto& channel = surfaces[static_cast<std::size_t>(k)];
-    gain[k] = 1 / std::max(1e-6f, upper_median(channel));
-    brightest = std::max(brightest, gain[k] * lower_quantile(channel, kShare));
+    if (!known[static_cast<std::size_t>(k)]) continue;
+    std::vector<float> surfaces;
+    for (const Observation& seen : observations.all) {
+      const float light = surface_light(model, seen.sight, seen.light)[k];
+      if (std::isfinite(light)) surfaces.push_back(light);
+    }
+    gain[k] = 1 / std::max(upper_median(surfaces), 1e-4f);
+    brightest = std::max(brightest, gain[k] * lower_quantile(std::move(surfaces), kShare));
   }
-  return gain * (kBrightest / brightest);
+  for (int k = 0; k < 3; ++k)
+    if (known[static_cast<std::size_t>(k)]) gain[k] *= kBrightest / std::max(brightest, 1e-4f);
+  return gain;
 }
 
-Restored restore(const cv::Mat3f& light, SightImage sights, const CameraModel& camera,
-                 const WaterModel& model, const Rendering& rendering) {
+Restored restore(const cv::Mat3f& light, const cv::Mat1b& mask, SightImage sights,
+                 const CameraModel& camera, const WaterModel& model, const Rendering& rendering) {
   const bool bytes = rendering.bits == 8;
   const int largest = bytes ? 255 : 65535;
+  const float clipped = clipped_light(rendering.transfer);
+  const std::array<bool, 3> in_model = determined(model);
   cv::Mat3w pixels(light.size());
   Restored restored{{}, cv::Mat1b(light.size(), 0)};
   const cv::Mat1f seen = sights.way.clone();
@@ -174,21 +180,22 @@ Restored restore(const cv::Mat3f& light, SightImage sights, const CameraModel& c
   parallel_for(static_cast<std::size_t>(light.rows), [&](std::size_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < light.cols; ++x) {
-      const cv::Vec3f& raw = light(y, x);
-      Eigen::Array3f color(raw[0], raw[1], raw[2]);
-      const bool clipped = !color.isFinite().all();
-      color = color.isFinite().select(color, 1.0f);
-      const cv::Vec3f& n = sights.normal(y, x);
+      const cv::Vec3f &raw = light(y, x), &n = sights.normal(y, x);
+      const Eigen::Array3f color(raw[0], raw[1], raw[2]);
       const Sight sight{place_of({x, y}, camera), sights.way(y, x),
                         Eigen::Vector3f(n[0], n[1], n[2]).normalized()};
-      const Eigen::Array3f surface = surface_light(model, sight, color) * rendering.gain;
-      for (int k = 0; k < 3; ++k)
+      const bool has_sight = sight.way > 0;  // false: the photograph shows no surface at all
+      const Eigen::Array3f surface =
+          (has_sight ? surface_light(model, sight, color) : color) * rendering.gain;
+      bool known = seen(y, x) > 0 && (mask.empty() || mask(y, x) != 0);
+      const Eigen::Array3f factor = loss_of(model, sight).factor / rendering.gain;
+      for (int k = 0; k < 3; ++k) {
         pixels(y, x)[2 - k] = rounded(rendering.transfer.value(surface[k]), largest);
-      // The smallest change of J that a grey level shows.
-      const Eigen::Array3f level =
-          1 / (255 * (loss_of(model, sight).factor / rendering.gain).max(1e-9f));
-      const bool is_left = (level * kLeastLevels < 1).all();
-      if (!clipped && seen(y, x) > 0 && is_left) restored.known(y, x) = 255;
+        const bool is_left =
+            !in_model[static_cast<std::size_t>(k)] || factor[k] * 255 >= kLeastLevels;
+        known = known && color[k] < clipped && is_left;
+      }
+      restored.known(y, x) = known ? 255 : 0;
     }
   });
   if (bytes)

@@ -16,8 +16,8 @@ namespace axial::color {
 // What the water and the light of a survey do to the light of a surface.
 using WaterModel = std::variant<SunWater, LampField>;
 
-// The light of the surface J of I = J factor + veil. Channels that the model does not determine are
-// returned as they are.
+// The light of the surface J of I = J factor + veil. Channels that the model does not determine,
+// and those of which less than a thousandth is left, are returned as they are.
 Eigen::Array3f surface_light(const WaterModel& model, const Sight& sight,
                              const Eigen::Array3f& light);
 
@@ -41,7 +41,7 @@ Choice choose_light(const Observations& observations, const Transfer& transfer);
 
 // How much the light of one point differs between photographs, as a share of how much the light of
 // different points differs (median standard deviation over a robust one), averaged over the
-// channels. Null model: of the photographs as they are.
+// channels with differences; infinity if there is none. Null model: of the photographs as they are.
 double spread_of(const Observations& observations, const WaterModel* model);
 
 // Fills pixels without a way from their neighbours, from coarse to fine. Without any pixel that has
@@ -56,21 +56,23 @@ struct Rendering {
 };
 
 // The gains by which the restored light of the survey is grey in the mean, and by which the
-// brightest hundredth of it is at 0.7, because single pixels are brighter. An assumption, if
-// nothing grey is known.
+// brightest hundredth of it is at 0.7, because single pixels are brighter. 1 for channels that the
+// model does not determine. An assumption, if nothing grey is known.
 Eigen::Array3f grey_world(const Observations& observations, const WaterModel& model);
 
 // A photograph without water, B G R of 8 or 16 bits. `known`: 255 where the colour is determined, 0
-// where a channel of the photograph is clipped, where the pixel sees no surface, and where fewer
-// than kLeastLevels grey levels (of 8 bits) are left of the light of a surface with J = 1.
+// where the mask is 0, where a channel of the photograph is clipped, where the pixel sees no
+// surface, and where fewer than kLeastLevels grey levels (of 8 bits) are left of the light of a
+// surface that becomes white.
 struct Restored {
   cv::Mat pixels;
   cv::Mat1b known;
 };
 inline constexpr double kLeastLevels = 4;
 
-// Restores a photograph. `light`: of light_of(), with marks; `sights`: of its camera.
-Restored restore(const cv::Mat3f& light, SightImage sights, const CameraModel& camera,
-                 const WaterModel& model, const Rendering& rendering);
+// Restores a photograph. `light`: of light_of(), not marked; `mask`: of its size, or empty;
+// `sights`: of its camera. Pixels without surface are restored as their neighbours are.
+Restored restore(const cv::Mat3f& light, const cv::Mat1b& mask, SightImage sights,
+                 const CameraModel& camera, const WaterModel& model, const Rendering& rendering);
 
 }  // namespace axial::color

@@ -61,7 +61,7 @@ Normal normal_at(const Channel& channel, const Vector3d& p, double prior) {
       squares += channel.weight[i] * direct * direct;
       product += channel.weight[i] * direct * rest;
     }
-    const double surface = product / squares;
+    const double surface = product / std::max(squares, 1e-300);
     normal.surfaces.push_back(surface);
     Vector3d shared = Vector3d::Zero();
     for (std::size_t i = begin; i < end; ++i) {
@@ -193,17 +193,20 @@ Moments moments_at(const Channel& channel, const Vector3d& p, double prior) {
   return moments;
 }
 
+// The fewest points with three observations for which the equations are used.
+constexpr std::size_t kLeastMoments = 50;
+
 // Solves the equations from a place near the solution. Returns the place if it does not get nearer.
 Vector3d solved(const Channel& channel, const Vector3d& start, double prior) {
   constexpr int kMost = 30;
-  constexpr std::size_t kLeastPoints = 50;
   Vector3d p = start;
   for (int i = 0; i < kMost; ++i) {
     Moments at = moments_at(channel, p, prior);
-    if (at.points < kLeastPoints) return start;
+    if (at.points < kLeastMoments) return start;
     at.matrix.diagonal().array() += 1e-12 * at.matrix.trace();
-    const Vector3d next = within_bounds(p - at.matrix.ldlt().solve(at.sum));
-    if (!next.allFinite()) return start;
+    const Vector3d change = at.matrix.ldlt().solve(at.sum);
+    if (!change.allFinite()) return start;
+    const Vector3d next = within_bounds(p - change);
     const double step = (next - p).norm();
     p = next;
     if (step < 1e-7) return p;
@@ -211,10 +214,19 @@ Vector3d solved(const Channel& channel, const Vector3d& start, double prior) {
   return p;
 }
 
-Matrix3d covariance_of(const Channel& channel, const Vector3d& p, double prior) {
+// The covariance of the unknowns: by the scatter of points and of photographs, with that of the
+// prior. With too few points for the equations it is that of least squares, for residuals with the
+// standard deviation `scale`.
+Matrix3d covariance_of(const Channel& channel, const Vector3d& p, double prior, double scale) {
+  const auto inverse_of = [](Matrix3d matrix) -> Matrix3d {
+    matrix.diagonal().array() += 1e-12 * matrix.trace();
+    return matrix.inverse();
+  };
   Moments at = moments_at(channel, p, prior);
-  at.matrix.diagonal().array() += 1e-12 * at.matrix.trace();
-  const Matrix3d inverse = at.matrix.inverse();
+  if (at.points < kLeastMoments)
+    return scale * scale * inverse_of(normal_at(channel, p, prior).matrix);
+  at.scatter(1, 1) += prior * prior * kRatioSigma * kRatioSigma;
+  const Matrix3d inverse = inverse_of(at.matrix);
   return inverse * at.scatter * inverse;
 }
 
@@ -233,7 +245,7 @@ SunChannel fit(Channel channel) {
     expect(channel, at.factors, at.surfaces);
     result.residual = weigh(channel, at.residuals);
   }
-  const Matrix3d covariance = covariance_of(channel, p, prior);
+  const Matrix3d covariance = covariance_of(channel, p, prior, result.residual);
   const double b = veil_rate(p);
   const Vector3d of_b(b / p[0], b, 0);  // the derivatives of b
   result.a = {p[0], std::sqrt(covariance(0, 0))};

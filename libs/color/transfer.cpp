@@ -10,12 +10,6 @@
 #include "base/parse_number.h"
 
 namespace axial::color {
-namespace {
-
-constexpr double kClipped = 0.98;
-
-}  // namespace
-
 Transfer Transfer::parse(std::string_view text) {
   constexpr std::string_view kGamma = "gamma:";
   Transfer transfer;
@@ -48,15 +42,12 @@ float Transfer::slope(float value) const {
   return std::max(1e-3f, (light(high) - light(low)) / (high - low));
 }
 
-cv::Mat3f light_of(const cv::Mat& pixels, int bits, const Transfer& transfer, bool mark_clipped) {
+cv::Mat3f light_of(const cv::Mat& pixels, int bits, const Transfer& transfer) {
   const bool bytes = pixels.depth() == CV_8U;
   const std::size_t values = std::size_t{1} << (bytes ? 8 : bits);
   std::vector<float> table(values);
-  for (std::size_t i = 0; i < values; ++i) {
-    const double value = static_cast<double>(i) / static_cast<double>(values - 1);
-    table[i] = mark_clipped && value >= kClipped ? std::numeric_limits<float>::quiet_NaN()
-                                                 : transfer.light(static_cast<float>(value));
-  }
+  for (std::size_t i = 0; i < values; ++i)
+    table[i] = transfer.light(static_cast<float>(i) / static_cast<float>(values - 1));
   cv::Mat3f light(pixels.size());
   for (int y = 0; y < pixels.rows; ++y)
     for (int x = 0; x < pixels.cols; ++x)
@@ -66,6 +57,21 @@ cv::Mat3f light_of(const cv::Mat& pixels, int bits, const Transfer& transfer, bo
         light(y, x)[2 - k] = table[std::min(value, values - 1)];
       }
   return light;
+}
+
+float clipped_light(const Transfer& transfer) {
+  return transfer.light(0.98f);
+}
+
+void mark_unusable(cv::Mat3f& light, const cv::Mat1b& mask, const Transfer& transfer) {
+  constexpr float kUnusable = std::numeric_limits<float>::quiet_NaN();
+  const float clipped = clipped_light(transfer);
+  for (int y = 0; y < light.rows; ++y)
+    for (int x = 0; x < light.cols; ++x) {
+      const bool left_out = !mask.empty() && mask(y, x) == 0;
+      for (int k = 0; k < 3; ++k)
+        if (left_out || light(y, x)[k] >= clipped) light(y, x)[k] = kUnusable;
+    }
 }
 
 }  // namespace axial::color

@@ -26,8 +26,13 @@ class Transfer {
 };
 
 // The light of a photograph: R G B, 0 to 1. `pixels`: B G R of 8 or 16 bits. `bits`: of a value of
-// 16 bits (8 to 16). With `mark_clipped`, a channel that is clipped, at 98 % of the largest value
-// or above, is NaN.
-cv::Mat3f light_of(const cv::Mat& pixels, int bits, const Transfer& transfer, bool mark_clipped);
+// 16 bits (8 to 16).
+cv::Mat3f light_of(const cv::Mat& pixels, int bits, const Transfer& transfer);
+
+// The light from which on a channel counts as clipped: that of 98 % of the largest value.
+float clipped_light(const Transfer& transfer);
+
+// Sets clipped channels to NaN, and pixels where `mask` is 0 (an empty mask: nowhere).
+void mark_unusable(cv::Mat3f& light, const cv::Mat1b& mask, const Transfer& transfer);
 
 }  // namespace axial::color

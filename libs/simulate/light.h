@@ -41,7 +41,8 @@ struct Light {
 // Two lamps of divers: left and right of the camera, turned inwards by 10 degrees.
 std::vector<Lamp> usual_lamps();
 
-// Light for the photographs of one view. `scene` casts shadows and must outlive the object.
+// Light for the photographs of one view. `scene` casts shadows. `water` and `scene` must outlive
+// the object.
 class LightOfView {
  public:
   LightOfView(const Light& light, const Water& water, const RayScene& scene, const View& view);

@@ -23,6 +23,7 @@ struct PixelLight {
   Eigen::Vector3f straight = Eigen::Vector3f::Zero(), blurred = Eigen::Vector3f::Zero();
   Eigen::Vector3f albedo = Eigen::Vector3f::Zero();
   double distance = 0;
+  float missed = 0;  // the share of rays that hit nothing
 };
 
 // A camera in the scene.
@@ -43,12 +44,16 @@ struct Camera {
         const auto point =
             surface_point(scene.scene, lens, &port, view, x + offset(j), y + offset(i));
         light.distance += point ? point->hit.distance : kFarthest;
-        if (point) add(light, *point);
+        if (point)
+          add(light, *point);
+        else
+          light.missed += 1;
       }
     const float weight = 1.0f / static_cast<float>(samples * samples);
     for (Eigen::Vector3f* color : {&light.straight, &light.blurred, &light.albedo})
       *color *= weight;
     light.distance *= weight;
+    light.missed *= weight;
     return light;
   }
 
@@ -73,7 +78,8 @@ LitImage render(const Camera& camera, const PlainWater& water) {
           into.straight += water.seen(color, point.hit.distance);
         });
     image.albedo(y, x) = bgr(light.albedo);
-    image.radiance(y, x) = bgr(light.straight);
+    image.radiance(y, x) =
+        bgr(light.straight + light.missed * water.seen(Eigen::Vector3f::Zero(), kFarthest));
   });
   return image;
 }

@@ -29,7 +29,8 @@ struct Water {
 // The water of a Jerlov type: I, IA, IB, II, III, 1C, 3C, 5C, 7C or 9C. `scattering`: at 550 nm
 // [1/m]; scattering is proportional to 1 / wavelength. Empty: a usual value of the type. K_d is
 // Jerlov's (Marine Optics, 1976, table XXVII). The absorption follows from Kirk's relation (1984),
-// K_d = sqrt(a^2 + (0.425 m - 0.19) a b) / m with m = 0.86, the cosine of the sun's rays in water.
+// K_d = sqrt(a^2 + (0.425 m - 0.19) a b) / m with m = 0.86, the mean
+// cosine of daylight in water.
 // Throws an Error for another type, and unless `scattering` is within 0 to 20.
 Water jerlov_water(std::string_view type, std::optional<double> scattering = {});
 

@@ -59,7 +59,8 @@ void add_patches(const fs::path& truth, const fs::path& photograph, std::vector<
   cv::Mat albedo, distance = read_float(name + ".distance.tiff"), normal;
   cv::cvtColor(read_float(truth), albedo, cv::COLOR_BGR2RGB);
   cv::cvtColor(read_float(name + ".normal.tiff"), normal, cv::COLOR_BGR2RGB);
-  const cv::Mat3f light = color::light_of(io::read_photograph(photograph).pixels, 16, {}, true);
+  cv::Mat3f light = color::light_of(io::read_photograph(photograph).pixels, 16, {});
+  color::mark_unusable(light, {}, {});
   for (int y = 0; y + kSide <= light.rows; y += kSide)
     for (int x = 0; x + kSide <= light.cols; x += kSide) {
       const cv::Rect part(x, y, kSide, kSide);
@@ -129,7 +130,8 @@ void use_white(std::vector<Patch>& patches) {
   }
 }
 
-// The slope of log(light / albedo) by distance, by medians: of both halves of the distances.
+// The slope of log(light / albedo) by distance, by the medians of the nearest and of the farthest
+// third.
 double slope(const std::vector<Patch>& patches, int k) {
   std::vector<Patch> sorted = patches;
   std::ranges::sort(sorted, {}, &Patch::distance);

@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "base/atomic_file.h"
 #include "base/order_statistics.h"
 #include "color/transfer.h"
 #include "io/bytes/json.h"
@@ -23,15 +24,17 @@ class RestoreColors : public axial::test::ProgramTest {
   // Photographs under water, and the scene with the true surface.
   void photograph(const std::string& light) const {
     succeed_in("SimulateUnderwater",
-               "--preset reef --coarseness 4 --views 8 --width 320 --height 240 --samples 2 "
+               "--preset reef --coarseness 4 --views 8 --width 320 --height 240 --samples 1 "
+               "--process-priority 0 "
                "--medium water -o . " +
                    light);
     succeed_in("InterfaceCOLMAP", "-i . --image-folder water --housing housing.json -o scene.mvs");
   }
 
   std::string restore(const std::string& options = "") const {
-    return succeed_in("RestoreColors",
-                      "-i scene.mvs -m mesh.ply --refractive -o restored " + options);
+    return succeed_in(
+        "RestoreColors",
+        "-i scene.mvs -m mesh.ply --refractive -o restored --process-priority 0 " + options);
   }
 
   // The median angle [degrees] between the photographs' light and the surface's true colour, with
@@ -40,8 +43,8 @@ class RestoreColors : public axial::test::ProgramTest {
     std::vector<cv::Vec3f> lights, truths;
     for (int i = 0; i < 8; ++i) {
       const std::string name = fmt::format("{:04}", i);
-      cv::Mat light = light_of(io::read_photograph(folder_ / photographs / (name + ".jpg")).pixels,
-                               8, {}, false);
+      cv::Mat light =
+          light_of(io::read_photograph(folder_ / photographs / (name + ".jpg")).pixels, 8, {});
       cv::Mat truth;
       cv::cvtColor(
           cv::imread((folder_ / "water" / (name + ".albedo.tiff")).string(), cv::IMREAD_UNCHANGED),
@@ -96,9 +99,28 @@ TEST_F(RestoreColors, TakesTheLampsOutOfThePhotographs) {
   EXPECT_LT(angle("restored"), 0.7 * angle("water"));
 }
 
+TEST_F(RestoreColors, WritesTheSameBytesForAnyNumberOfThreads) {
+  photograph("--water II --light lamp");
+  restore("--points 1000 --max-threads 1");
+  fs::rename(folder_ / "restored", folder_ / "alone");
+  restore("--points 1000");
+  for (const char* name : {"0000.jpg", "0007.jpg", "colors.json"})
+    EXPECT_EQ(read_file(folder_ / "alone" / name), read_file(folder_ / "restored" / name)) << name;
+}
+
+TEST_F(RestoreColors, MakesTheGreyPatchGrey) {
+  photograph("--water 0.9,0.5,0.3,0.8,0.4,0.3,0.05,0.15,0.2");
+  restore("--grey 0003.jpg:150,110,24,24");
+  const cv::Mat pixels = io::read_photograph(folder_ / "restored/0003.jpg").pixels;
+  const cv::Scalar light = cv::mean(light_of(pixels, 8, {})(cv::Rect(150, 110, 24, 24)));
+  EXPECT_NEAR(light[0] / light[1], 1, 0.05);
+  EXPECT_NEAR(light[2] / light[1], 1, 0.05);
+  EXPECT_EQ(findings().at("white"), "grey patch");
+}
+
 TEST_F(RestoreColors, RefusesWhatIsWrongInOneLine) {
   photograph("--water 3C");
-  const std::string scene = "-i scene.mvs -m mesh.ply --refractive -v 0 ";
+  const std::string scene = "-i scene.mvs -m mesh.ply --refractive -v 0 --process-priority 0 ";
   expect_refusal("RestoreColors", scene, "no output folder given");
   expect_refusal("RestoreColors", scene + "-o restored --curve log", "curve is 'log'");
   expect_refusal("RestoreColors", scene + "-o restored --grey 0000.jpg:1,2,3",
@@ -107,6 +129,10 @@ TEST_F(RestoreColors, RefusesWhatIsWrongInOneLine) {
                  "no photograph has this name");
   expect_refusal("RestoreColors", scene + "-o restored --grey 0000.jpg:310,1,30,4",
                  "lies outside the photograph of 320 x 240 pixels");
+  expect_refusal("RestoreColors", scene + "-o restored --grey 7.jpg:1,2,3,4",
+                 "no photograph has this name");
+  expect_refusal("RestoreColors", scene + "-o restored --grey 0007.jpg:1.5,2,3,4",
+                 "must be IMAGE:X,Y,WIDTH,HEIGHT");
   expect_refusal("RestoreColors", scene + "-o water", "--output");
   EXPECT_FALSE(fs::exists(folder_ / "restored" / "0000.jpg"));
 }

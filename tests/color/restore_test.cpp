@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 namespace axial::color {
 namespace {
@@ -41,9 +40,9 @@ cv::Mat3f light(const Eigen::Array3f& surface) {
 
 TEST(Restore, GivesTheLightOfTheSurface) {
   const Eigen::Array3f surface(0.2f, 0.4f, 0.1f);
-  const Restored eight = restore(light(surface), sights(2), camera(), water(), {});
+  const Restored eight = restore(light(surface), {}, sights(2), camera(), water(), {});
   const Restored sixteen =
-      restore(light(surface), sights(2), camera(), water(), {Eigen::Array3f::Ones(), {}, 16});
+      restore(light(surface), {}, sights(2), camera(), water(), {Eigen::Array3f::Ones(), {}, 16});
   ASSERT_EQ(eight.pixels.type(), CV_8UC3);
   ASSERT_EQ(sixteen.pixels.type(), CV_16UC3);
   for (int k = 0; k < 3; ++k) {
@@ -56,26 +55,57 @@ TEST(Restore, GivesTheLightOfTheSurface) {
 
 TEST(Restore, TellsWhatIsNotKnown) {
   cv::Mat3f image = light({0.2f, 0.4f, 0.1f});
-  image(1, 1)[0] = std::numeric_limits<float>::quiet_NaN();  // clipped
+  image(1, 1)[0] = 0.99f;  // clipped
   SightImage seen = sights(2);
   seen.way(2, 5) = 0;
-  const Restored restored = restore(image, seen, camera(), water(), {});
+  const Restored restored = restore(image, {}, seen, camera(), water(), {});
   EXPECT_EQ(restored.known(1, 1), 0);
   EXPECT_EQ(restored.known(2, 5), 0);
   EXPECT_EQ(cv::countNonZero(restored.known), 46);
   // A pixel without surface is restored as its neighbours are.
   EXPECT_EQ(restored.pixels.at<cv::Vec3b>(2, 5), restored.pixels.at<cv::Vec3b>(2, 4));
   // After 10 m, a four-hundredth of the red light is left: one grey level.
-  EXPECT_EQ(cv::countNonZero(restore(image, sights(10), camera(), water(), {}).known), 0);
+  EXPECT_EQ(cv::countNonZero(restore(image, {}, sights(10), camera(), water(), {}).known), 0);
 }
 
 TEST(Restore, ChannelsThatAreNotDeterminedStay) {
   SunWater half = water();
   half.channels[0].determined = false;
   const cv::Mat3f image = light({0.2f, 0.4f, 0.1f});
-  const Restored restored = restore(image, sights(2), camera(), half, {});
+  const Restored restored = restore(image, {}, sights(2), camera(), half, {});
   EXPECT_NEAR(restored.pixels.at<cv::Vec3b>(0, 0)[2], 255 * Transfer().value(image(0, 0)[0]), 0.6);
   EXPECT_NEAR(restored.pixels.at<cv::Vec3b>(0, 0)[1], 255 * Transfer().value(0.4f), 0.6);
+}
+
+TEST(Restore, MasksAndPhotographsWithoutSurfaceAreNotKnown) {
+  const cv::Mat3f image = light({0.2f, 0.4f, 0.1f});
+  cv::Mat1b mask(6, 8, std::uint8_t{255});
+  mask(3, 3) = 0;
+  EXPECT_EQ(cv::countNonZero(restore(image, mask, sights(2), camera(), water(), {}).known), 47);
+  const Restored nothing = restore(image, {}, sights(0), camera(), water(), {});
+  EXPECT_EQ(cv::countNonZero(nothing.known), 0);
+  EXPECT_NEAR(nothing.pixels.at<cv::Vec3b>(0, 0)[1], 255 * Transfer().value(image(0, 0)[1]), 0.6);
+}
+
+// A channel of which the water took all is not determined and has no light: the others must not
+// suffer from it.
+TEST(GreyWorld, LeavesOutChannelsThatAreNotDetermined) {
+  SunWater half = water();
+  half.channels[0].determined = false;
+  Observations observations;
+  observations.first = {0, 2};
+  for (int i = 0; i < 2; ++i) {
+    Observation seen;
+    seen.sight.way = 2;
+    const Eigen::Array3f factor = half.factor(seen.sight);
+    seen.light = Eigen::Array3f(0.2f, 0.4f, 0.1f) * factor + half.veil(seen.sight);
+    seen.light[0] = 0;
+    observations.all.push_back(seen);
+  }
+  const Eigen::Array3f gain = grey_world(observations, half);
+  EXPECT_EQ(gain[0], 1);
+  EXPECT_NEAR(gain[1] * 0.4, 0.7, 1e-4);
+  EXPECT_NEAR(gain[2] * 0.1, 0.7, 1e-4);
 }
 
 TEST(FillSights, TakesTheNearestAndKeepsTheOthers) {

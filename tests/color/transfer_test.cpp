@@ -36,16 +36,21 @@ TEST(Transfer, OtherCurvesAreRefused) {
 
 TEST(Transfer, ClippedChannelsAreMarked) {
   const cv::Mat3b bytes(1, 1, cv::Vec3b(0, 128, 255));
-  const cv::Vec3f marked = light_of(bytes, 8, {}, true)(0, 0);
-  EXPECT_TRUE(std::isnan(marked[0]));  // R
-  EXPECT_NEAR(marked[1], 0.2158, 1e-3);
-  EXPECT_EQ(marked[2], 0);
-  EXPECT_EQ(light_of(bytes, 8, {}, false)(0, 0)[0], 1);
-  // 12 of 16 bits.
+  cv::Mat3f light = light_of(bytes, 8, {});
+  EXPECT_EQ(light(0, 0)[0], 1);  // R
+  mark_unusable(light, {}, {});
+  EXPECT_TRUE(std::isnan(light(0, 0)[0]));
+  EXPECT_NEAR(light(0, 0)[1], 0.2158, 1e-3);
+  EXPECT_EQ(light(0, 0)[2], 0);
+  mark_unusable(light, cv::Mat1b(1, 1, std::uint8_t{0}), {});
+  EXPECT_TRUE(std::isnan(light(0, 0)[2]));
+}
+
+TEST(Transfer, ValuesOfFewerBitsReachWhite) {
   const cv::Mat3w words(1, 1, cv::Vec3w(0, 2048, 4095));
-  const cv::Vec3f light = light_of(words, 12, Transfer::parse("linear"), false)(0, 0);
-  EXPECT_NEAR(light[1], 2048 / 4095.0, 1e-6);
-  EXPECT_EQ(light[0], 1);
+  const cv::Mat3f light = light_of(words, 12, Transfer::parse("linear"));
+  EXPECT_NEAR(light(0, 0)[1], 2048 / 4095.0, 1e-6);
+  EXPECT_EQ(light(0, 0)[0], 1);
 }
 
 }  // namespace

@@ -73,6 +73,32 @@ TEST_F(SimulateUnderwater, PhotographsOfTwoCameras) {
   refuses("--rig-delay needs --rig-base", kSmall + "--rig-delay 0.1 -o b");
 }
 
+TEST_F(SimulateUnderwater, PhotographsWithTheLightOfWater) {
+  write_atomically(folder_ / "lamps.json",
+                   R"({"lamps": [{"place": [0.2, 0, 0], "direction": [0, 0, 1]}]})");
+  const Outcome outcome = run(kSmall + "--medium water --water 3C --light lamp:lamps.json -o a");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_TRUE(fs::exists(folder_ / "a/water/0002.jpg"));
+  EXPECT_TRUE(fs::exists(folder_ / "a/water/0002.albedo.tiff"));
+  const nlohmann::json light = io::read_json(folder_ / "a/water/light.json");
+  EXPECT_EQ(light.at("type"), "3C");
+  EXPECT_EQ(light.at("lamps").at(0).at("place").at(0), 0.2);
+  EXPECT_EQ(light.at("absorption_per_m").size(), 16u);
+  refuses("water is '3X'", kSmall + "--water 3X -o b");
+  refuses("must be a type of water, or nine numbers", kSmall + "--water 1,2 -o b");
+  refuses("'30' is not a number from 0 to 20", kSmall + "--water 30,1,1,1,1,1,0,0,0 -o b");
+  refuses("--light is 'moon'", kSmall + "--water 3C --light moon -o b");
+  refuses("--depth needs --water", kSmall + "--depth 3 -o b");
+  refuses("--depth 0.1: must be above", kSmall + "--water 3C --depth 0.1 -o b");
+  refuses("--light contradicts --water with nine numbers",
+          kSmall + "--water 1,1,1,1,1,1,0,0,0 --light lamp -o b");
+  refuses("--haze contradicts --water", kSmall + "--water 3C --haze 0.5 -o b");
+  write_atomically(folder_ / "dark.json",
+                   R"({"lamps": [{"place": [0.2, 0], "direction": [0, 0, 1]}]})");
+  refuses("dark.json: lamps[0].place is [0.2,0], but must be three numbers [m]",
+          kSmall + "--water 3C --light lamp:dark.json -o b");
+}
+
 TEST_F(SimulateUnderwater, PhotographsThroughTheSurface) {
   const Outcome outcome = run(kSmall + "--water-level 0.5 --n-water 1.34 -o a --medium water");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
