@@ -98,6 +98,9 @@ PROGRAMS = {program.name: program for program in (
     Program("FindTargets", ("-i", "board/photos", "-o", "out.xml", "--families", "circular12,4X4_50", "--control",
                             "control.json", "--control", "plates.csv", "--control", "bars.txt"),
             (*BOARDS[:1], "control.json", "plates.csv", "bars.txt"), may_name=("board",)),
+    Program("RestoreColors", ("-i", "wet.mvs", "-m", "wet/mesh.ply", "--light", "sun", "--points", "1000", "-o", "out"),
+            ("wet.mvs", "wet.housing.json", "wet.lenses.json", "wet/mesh.ply", "wet/water/0000.jpg"),
+            tuple(f"wet/water/000{i}.jpg" for i in range(1, 6))),
     Program("ReproducePaper", ("figure3", "--quick", "-o", "paper"),
             ("paper/quick/figure3.json", "ReproducePaper.cfg"), kept_on_error=r"paper/.*",
             may_name=("figure3",)),
@@ -118,7 +121,8 @@ def write_targets(folder):
     records = colmap_text.records
     names = list(colmap_text.images_of(folder / "sim" / "sparse"))
     keypoints = [line.split() for line in list(records(folder / MODEL[1]))[1::2]]
-    points = {words[0]: tuple(map(float, words[1:4])) for words in map(str.split, records(folder / MODEL[2]))}
+    lines = map(str.split, filter(None, records(folder / MODEL[2])))
+    points = {words[0]: tuple(map(float, words[1:4])) for words in lines}
     seen = {point: [(name, *line[line.index(point) - 2:line.index(point)]) for name, line in zip(names, keypoints)
                     if point in line[2::3]] for point in points}
     chosen = sorted(points, key=lambda point: (-len(seen[point]), int(point)))[:4]
@@ -152,6 +156,10 @@ def make_all(binaries, folder):
     for path in (folder / "sim").rglob("*.tiff"):
         path.unlink()
     run("InterfaceCOLMAP", *PROGRAMS["InterfaceCOLMAP"].options[:-1], "scene.mvs")
+    run("SimulateUnderwater", "--preset", "reef", "--coarseness", "8", "--views", "6", "--width", "160", "--height",
+        "120", "--samples", "1", "--sparse-points", "100", "--medium", "water", "--truth", "0", "--water",
+        "0.9,0.5,0.3,0.8,0.4,0.3,0.05,0.15,0.2", "-o", "wet")
+    run("InterfaceCOLMAP", "-i", "wet", "--image-folder", "wet/water", "--housing", "wet/housing.json", "-o", "wet.mvs")
     run("DensifyPointCloud", *PROGRAMS["DensifyPointCloud"].options[:-1], "scene_dense.mvs")
     run("ReconstructMesh", "-i", "scene_dense.mvs", "-o", "mesh.ply")
     run("TextureMesh", "-i", "scene_dense.mvs", "-m", "mesh.ply", "-o", "textured.ply")
