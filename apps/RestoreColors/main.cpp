@@ -33,7 +33,7 @@ Mesh read_mesh(const Settings& settings, const LocalFrame& frame, const Context&
 // The memory to fit both models, for each observation.
 constexpr std::uint64_t kBytesToFit = 700;
 
-// Says what the numbers are based on, where this may be wrong.
+// Warns of a mesh that is inside out, and of a scene without a port.
 void check_scene(const Settings& settings, const survey::Survey& survey, const Mesh& mesh,
                  const Context& context) {
   geometry::warn_if_inside_out(

@@ -4,7 +4,7 @@
 // E is the irradiance as a vector, times the loss on the way to the camera: for a Lambertian
 // surface that all lamps reach, the irradiance of the surface is linear in its normal n, however
 // many lamps there are. E is interpolated in a grid of image positions and ways. V, the veil, is
-// V(place) T(d): T is the light that a lamp at kOffset from the camera's axis and the water along
+// V(place) T(d): T is the light that a lamp 0.25 m from the camera's axis and the water along
 // the way scatter, as a share of that of a long way. Nothing about the lamps has to be known.
 #pragma once
 

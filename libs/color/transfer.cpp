@@ -10,6 +10,7 @@
 #include "base/parse_number.h"
 
 namespace axial::color {
+
 Transfer Transfer::parse(std::string_view text) {
   constexpr std::string_view kGamma = "gamma:";
   Transfer transfer;

@@ -80,6 +80,7 @@ TEST_F(RestoreColors, FindsTheCoefficientsOfPlainWater) {
       {{"red", 0.9}, {"green", 0.5}, {"blue", 0.3}}};
   for (const auto& [name, a] : truth) {
     const nlohmann::json& channel = found.at("channels").at(name);
+    // 8 % is the aim for a survey; 0.02 /m more for eight photographs of 320 pixels.
     EXPECT_NEAR(channel.at("a_per_m").at("value"), a, 0.08 * a + 0.02) << name;
     EXPECT_TRUE(channel.at("determined"));
   }
@@ -95,6 +96,8 @@ TEST_F(RestoreColors, TakesTheLampsOutOfThePhotographs) {
   const std::string output = restore();
   EXPECT_THAT(output, HasSubstr("Light: lamp, by the photographs"));
   EXPECT_EQ(findings().at("light"), "lamp");
+  // The ratios are 0.24 and 0.44 for photographs of 512 pixels (docs/colors.md, water II); small
+  // photographs have more noise.
   EXPECT_LT(findings().at("spread_after"), 0.7 * findings().at("spread_before").get<double>());
   EXPECT_LT(angle("restored"), 0.7 * angle("water"));
 }
