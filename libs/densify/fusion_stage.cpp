@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/memory.h"
@@ -176,6 +177,9 @@ class TileRun {
       for (const cv::Mat& plane :
            {cv::Mat(map.depth), cv::Mat(map.normal), cv::Mat(map.confidence)})
         survey::add_pixels(print, plane);
+      // The points of a tile may have colours, which the fingerprint of the maps does not hold.
+      if (const auto& colors = run_.project.views[views_[view].image].colors; !colors.empty())
+        print.add(read_file(colors));
       seen[view] = cloud::boxes_seen(map, reaches);
       contents_[view] = print.hex();
       counter.add();

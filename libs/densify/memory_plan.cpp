@@ -166,7 +166,7 @@ StageBytes bytes_of_stages(const Project& project, const Options& options,
   for (const View& view : project.views) {
     if (exports) bytes.exported = std::max(bytes.exported, bytes_needed_to_resample(view));
     pixels = std::max(pixels, view.pixels());
-    decode = std::max(decode, io::bytes_needed(view.header));
+    decode = std::max(decode, view.decoding_bytes());
     masks |= view.masked();
   }
   bytes.scene = allocated_memory();

@@ -16,6 +16,20 @@ cv::Size size_of(const View& view) {
   return {view.camera.width, view.camera.height};
 }
 
+constexpr int kAllBits = 16;  // restored pictures use all bits of their values
+
+// Decoded pixels in 8 bits at the resolution of the camera.
+cv::Mat3b at_working_size(cv::Mat pixels, int bit_depth, const View& view) {
+  return resized_image(io::in_8_bits(pixels, bit_depth), size_of(view));
+}
+
+// The memory [bytes] to decode a picture and to convert it to 8 bits.
+std::uint64_t bytes_to_convert(const io::ImageHeader& header) {
+  const auto stored = static_cast<std::uint64_t>(header.size.width) *
+                      static_cast<std::uint64_t>(header.size.height);
+  return io::bytes_needed(header) + (header.bits > 8 ? 3 * stored : 0);
+}
+
 void leave_out(const cv::Mat1b& mask, cv::Mat1b& usable) {
   if (mask.empty()) return;
   if (usable.empty())
@@ -55,24 +69,33 @@ cv::Mat1b working_mask(const View& view, const cv::Mat1b& opaque, int ignored_la
 Photographs::Photographs(const Survey& survey)
     : survey_(survey), labels_(survey.options.ignore_mask_label) {}
 
+bool Photographs::needs_photograph(const View& view, Channels channels) const {
+  return view.colors.empty() || channels != Channels::color || view.header.alpha ||
+         survey_.options.ignore_black_border;
+}
+
 Pixels Photographs::read(std::size_t view, Channels channels) const {
   const View& from = survey_.views[view];
   const Options& options = survey_.options;
   Pixels result;
-  io::Photograph photograph = options.memory_survey
-                                  ? photograph_of(*options.memory_survey, from.image)
-                                  : io::read_photograph(from.file);
-  result.color = resized_image(io::in_8_bits(photograph.pixels, survey_.bit_depth), size_of(from));
-  photograph.pixels.release();
-  if (channels != Channels::color) cv::cvtColor(result.color, result.grey, cv::COLOR_BGR2GRAY);
+  cv::Mat1b opaque, inside;
+  if (needs_photograph(from, channels)) {
+    io::Photograph photograph = options.memory_survey
+                                    ? photograph_of(*options.memory_survey, from.image)
+                                    : io::read_photograph(from.file);
+    opaque = photograph.opaque;
+    result.color = at_working_size(std::move(photograph.pixels), survey_.bit_depth, from);
+    if (channels != Channels::color) cv::cvtColor(result.color, result.grey, cv::COLOR_BGR2GRAY);
+    if (options.ignore_black_border) inside = outside_black_border(result.color);
+  }
+  if (channels == Channels::grey || !from.colors.empty()) result.color.release();
+  if (channels != Channels::grey && !from.colors.empty())
+    result.color = at_working_size(io::read_photograph(from.colors).pixels, kAllBits, from);
   if (survey_.photograph_check && channels == Channels::color)
     survey_.photograph_check->take(from.image, result.color);
   else if (survey_.photograph_check)
     survey_.photograph_check->take(from.image, result.grey);
-  cv::Mat1b inside;
-  if (options.ignore_black_border) inside = outside_black_border(result.color);
-  if (channels == Channels::grey) result.color.release();
-  result.mask = working_mask(from, photograph.opaque, options.ignore_mask_label, &labels_);
+  result.mask = working_mask(from, opaque, options.ignore_mask_label, &labels_);
   leave_out(inside, result.mask);
   return result;
 }
@@ -80,12 +103,15 @@ Pixels Photographs::read(std::size_t view, Channels channels) const {
 std::uint64_t Photographs::bytes_to_read_color() const {
   std::uint64_t largest = 0;
   for (const View& view : survey_.views) {
-    const io::ImageHeader& header = view.header;
-    const auto stored = static_cast<std::uint64_t>(header.size.width) *
-                        static_cast<std::uint64_t>(header.size.height);
-    // While the photograph is decoded and converted to 8 bits; while its black border is found, or
-    // while its labels are decoded and resized.
-    const std::uint64_t decoded = io::bytes_needed(header) + (header.bits > 8 ? 3 * stored : 0);
+    const auto stored = static_cast<std::uint64_t>(view.header.size.width) *
+                        static_cast<std::uint64_t>(view.header.size.height);
+    // While the photograph or its colours are decoded and converted to 8 bits; while its black
+    // border is found, or while its labels are decoded and resized.
+    std::uint64_t decoded = 0;
+    if (needs_photograph(view, Channels::color)) decoded = bytes_to_convert(view.header);
+    if (!view.colors.empty())
+      decoded = std::max(decoded,
+                         bytes_to_convert(view.colors_header) + (view.header.alpha ? stored : 0));
     const std::uint64_t marked = 4 * view.pixels() + (view.mask.empty() ? 0 : 6 * stored);
     largest = std::max(largest, 4 * view.pixels() + std::max(decoded, marked));
   }

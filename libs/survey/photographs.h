@@ -10,7 +10,8 @@
 
 namespace axial::survey {
 
-// The pixels of a photograph, of the size of View::camera.
+// The pixels of a photograph, of the size of View::camera. `grey` is that of the photograph, and
+// `color` that of View::colors if the view has such a file.
 struct Pixels {
   cv::Mat1b grey;   // empty unless asked for
   cv::Mat3b color;  // B G R; empty unless asked for
@@ -35,8 +36,10 @@ class Photographs {
 
   const Survey& survey() const { return survey_; }
 
-  // Reads a view, and gives its photograph to Survey::photograph_check. Thread-safe. Error for
-  // files that cannot be decoded, and for a mask whose shape differs from its photograph's.
+  // Reads a view, and gives its grey levels, or its colours if they alone are asked for, to
+  // Survey::photograph_check. The photograph is not decoded if View::colors gives all that is asked
+  // for. Thread-safe. Error for files that cannot be decoded, and for a mask whose shape differs
+  // from its photograph's.
   Pixels read(std::size_t view, Channels channels) const;
 
   // The largest memory [bytes] of read(view, Channels::color) for a view, with the result.
@@ -53,6 +56,9 @@ class Photographs {
   void report(const Context& context) const;
 
  private:
+  // Whether read() decodes the photograph itself.
+  bool needs_photograph(const View& view, Channels channels) const;
+
   const Survey& survey_;
   mutable LabelCheck labels_;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "survey/survey.h"
 
+#include <algorithm>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/first_error.h"
@@ -11,6 +13,7 @@
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/scene_files.h"
 #include "scene/resolution.h"
+#include "survey/colors.h"
 #include "survey/masks.h"
 #include "survey/memory_survey.h"
 #include "survey/views_file.h"
@@ -79,6 +82,11 @@ void find_bit_depth(Survey& survey) {
 
 }  // namespace
 
+std::uint64_t View::decoding_bytes() const {
+  const std::uint64_t own = io::bytes_needed(header);
+  return colors.empty() ? own : std::max(own, io::bytes_needed(colors_header));
+}
+
 void use_mask_label(Options& options, int label) {
   options.ignore_mask_label = label;
   options.ignore_black_border = label == -1;
@@ -116,7 +124,8 @@ Survey open_scene(const Options& options, const Context& context) {
 
 std::vector<fs::path> photograph_files(const Survey& survey) {
   std::vector<fs::path> files;
-  for (const View& view : survey.views) files.insert(files.end(), {view.file, view.mask});
+  for (const View& view : survey.views)
+    files.insert(files.end(), {view.file, view.mask, view.colors});
   return files;
 }
 
@@ -124,6 +133,7 @@ void find_photographs(Survey& survey, const Context& context) {
   read_headers(survey);
   check_sizes(survey);
   choose_masks(survey, context);
+  find_colors(survey);
   find_bit_depth(survey);
   survey.add_inputs(photograph_files(survey));
   survey.inputs.push_back(survey.options.views_file);

@@ -24,11 +24,13 @@ namespace axial::survey {
 struct View {
   CameraModel camera;
   Pose pose;
-  std::size_t image = 0;       // index into Scene::images
-  std::uint32_t id = 0;        // SceneImage::id, or the index of the image if that is kNoId
-  std::filesystem::path file;  // the photograph; of a survey in memory: SceneImage::path
-  io::ImageHeader header;      // of the photograph
-  std::filesystem::path mask;  // file of the mask; empty: none
+  std::size_t image = 0;          // index into Scene::images
+  std::uint32_t id = 0;           // SceneImage::id, or the index of the image if that is kNoId
+  std::filesystem::path file;     // the photograph; of a survey in memory: SceneImage::path
+  io::ImageHeader header;         // of the photograph
+  std::filesystem::path mask;     // file of the mask; empty: none
+  std::filesystem::path colors;   // file of Options::color_folder; empty: the photograph
+  io::ImageHeader colors_header;  // of `colors`
 
   // The number of pixels of the camera.
   std::uint64_t pixels() const {
@@ -37,6 +39,9 @@ struct View {
 
   // Whether pixels may be left out because of a mask or of transparency.
   bool masked() const { return !mask.empty() || header.alpha; }
+
+  // The memory [bytes] to decode the photograph, or the file of its colours if that needs more.
+  std::uint64_t decoding_bytes() const;
 };
 
 // A program that no longer needs the scene may replace `scene` by an empty one, to free its memory.
@@ -77,16 +82,17 @@ Survey open_scene(const Options& options, const Context& context = {});
 
 // Finds the photographs and their masks, and reads the headers of the photographs. All calibrated
 // images are used, or only the images that Options::views_file names. Photographs, masks and the
-// views file are added to Survey::inputs. Photographs of more than 8 bits may be decoded, to find
-// the bit depth. Error for
+// views file are added to Survey::inputs, and so are the files of colours. Photographs of more than
+// 8 bits may be decoded, to find the bit depth. Error for
 // - a photograph that is missing, or has another shape than its camera
 //   (io::check_photograph_sizes),
 // - a missing mask in Options::mask_folder,
+// - a photograph without a file in Options::color_folder, or one of another size (find_colors()),
 // - a line of the views file that names no image,
 // - a scene without an image to use.
 void find_photographs(Survey& survey, const Context& context);
 
-// The photographs and masks of the views.
+// The photographs, masks and colours of the views. A path may be empty.
 std::vector<std::filesystem::path> photograph_files(const Survey& survey);
 
 // The cameras of `survey.views`.

@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "io/images/folder_ends.h"
 #include "io/images/image.h"
 
 namespace axial::io {
@@ -89,26 +90,11 @@ class MaskFolder {
  private:
   fs::path place(const fs::path& end) const { return end.empty() ? folder_ : folder_ / end; }
 
-  // Returns the ends of an image folder's path that exist as subfolders here, the longest first,
-  // and "" last.
-  std::vector<fs::path> ends_of(const fs::path& image_folder) const {
-    std::vector<fs::path> ends{""};
-    fs::path end;
-    const fs::path relative = image_folder.relative_path();
-    std::vector<fs::path> parts(relative.begin(), relative.end());
-    for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
-      end = end.empty() ? *part : *part / end;
-      std::error_code error;
-      if (fs::is_directory(folder_ / end, error)) ends.push_back(end);
-    }
-    std::ranges::reverse(ends);
-    return ends;
-  }
-
   void count(const fs::path& image) {
     const fs::path parent = image.parent_path();
     auto ends = ends_.find(parent.string());
-    if (ends == ends_.end()) ends = ends_.emplace(parent.string(), ends_of(parent)).first;
+    if (ends == ends_.end())
+      ends = ends_.emplace(parent.string(), folder_ends(folder_, parent)).first;
     for (const fs::path& end : ends->second) {
       ++stems_[(end / image.stem()).string()];
       ++names_[(end / image.filename()).string()];

@@ -36,8 +36,8 @@ struct MemorySurvey {
 // - a sparse point that is not finite or that an image sees that does not exist.
 void check(const MemorySurvey& survey);
 
-// Messages name the settings of io::SceneFiles, and "bit_depth", "ignore_mask_label" and
-// "mask_folder".
+// Messages name the settings of io::SceneFiles, and "bit_depth", "color_folder",
+// "ignore_mask_label" and "mask_folder".
 struct Options {
   io::SceneFiles files;
   std::shared_ptr<const MemorySurvey> memory_survey;  // not null: instead of files.scene
@@ -47,6 +47,10 @@ struct Options {
   std::filesystem::path mask_folder;
   int ignore_mask_label = -1;  // value of mask pixels to leave out; below 0: no masks are used
   bool ignore_black_border = false;  // leave out the black borders that undistortion leaves
+  // Folder with the colours of every image that is used: pictures of the size of the photographs,
+  // as RestoreColors writes them. Empty: the photographs have the colours. Matching, transparency
+  // and black borders are always those of the photographs.
+  std::filesystem::path color_folder;
   // The number of bits that the values of 16-bit photographs use: 8 to 16. 0: as many as the
   // largest value in all photographs needs.
   int bit_depth = 0;
