@@ -13,6 +13,7 @@
 #include "base/version.h"
 #include "dense_config.h"
 #include "io/images/bit_depth.h"
+#include "survey/photograph_options.h"
 #include "without_effect.h"
 
 namespace axial::apps {
@@ -330,6 +331,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   ProgramOptions program = described_program();
   declare_io(program.visible, settings);
   io::declare_bit_depth(program.visible, settings.survey.bit_depth);
+  survey::declare_colors(program.visible, settings.survey);
   declare_camera(program.visible, raw, settings);
   declare_matching(program.visible, settings);
   declare_parts(program.visible, raw);

@@ -15,8 +15,13 @@ constexpr Names kMatching{"sub-resolution-levels", "iters",      "geometric-iter
                           "postprocess-dmaps",     "projection", "warp",
                           "overwrite-dmaps"};
 constexpr Names kMapSize{"resolution-level", "max-resolution", "min-resolution", "number-views"};
-constexpr Names kFusion{"number-views-fuse",    "estimate-colors", "estimate-normals",
-                        "estimate-uncertainty", "crop-to-roi",     "remove-dmaps"};
+constexpr Names kFusion{"number-views-fuse",
+                        "estimate-colors",
+                        "estimate-normals",
+                        "estimate-uncertainty",
+                        "crop-to-roi",
+                        "remove-dmaps",
+                        "colors"};
 constexpr Names kImages{"resolution-level", "max-resolution",     "min-resolution", "number-views",
                         "mask-path",        "ignore-mask-label",  "bit-depth",      "estimate-roi",
                         "roi-border",       "view-neighbors-file"};
@@ -70,6 +75,8 @@ void warn_of_options_without_effect(const Options& options) {
     warn_of(options, {"remove-dmaps", "report-file"}, "with --tile, which makes no whole cloud");
   if (!settings.fusion.fuse)
     warn_of(options, kFusion, "with --fusion-mode 1, which makes only depth maps");
+  else if (!settings.fusion.needs_colors())
+    warn_of(options, {"colors"}, "with --estimate-colors 0");
 }
 
 void warn_of_options_without_effect(const Options& options, const densify::SceneFacts& facts) {

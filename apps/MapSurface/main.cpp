@@ -14,6 +14,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/naming.h"
+#include "base/option_values.h"
 #include "base/output_lock.h"
 #include "base/parallel.h"
 #include "belong/surface_check.h"
@@ -285,6 +286,12 @@ void write(const Settings& settings, const TexturedMesh& mesh, const FaceFacts& 
   for (const fs::path& file : files.all()) log_info("wrote {}", file.string());
 }
 
+// The textures of a mesh are its colours.
+void leave_out_colors(const Options& options, survey::Options& survey) {
+  warn_without_effect(options.parsed, {"colors"}, "on a mesh that has textures");
+  survey.color_folder.clear();
+}
+
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
@@ -296,6 +303,7 @@ int run(int argc, char** argv) {
   survey::Survey survey = survey::open_scene(settings.survey, context);
   TexturedMesh mesh = read_mesh(settings, survey.frame, context);
   warn_of_local_coordinates(settings, survey.frame);
+  if (!mesh.textures.empty()) leave_out_colors(options, survey.options);
   belong::check_surface(survey.scene, belong::shape_of(mesh.mesh), {settings.mesh, survey.file()},
                         context);
   survey::find_photographs(survey, context);

@@ -10,7 +10,7 @@
 #include "io/openmvs/scene_options.h"
 #include "map/up_direction.h"
 #include "settings.h"
-#include "survey/survey.h"
+#include "survey/photograph_options.h"
 
 namespace axial::apps {
 namespace {
@@ -21,7 +21,6 @@ namespace fs = std::filesystem;
 struct Raw {
   std::string input, up;
   io::SceneOptions scene;
-  int ignore_mask_label = -1;
 };
 
 void declare_io(OptionList& list, Raw& raw, Settings& settings) {
@@ -58,24 +57,10 @@ void declare_map(OptionList& list, Raw& raw, Settings& settings) {
       .sets("contour_interval");
 }
 
-void declare_photographs(OptionList& list, Raw& raw, Settings& settings) {
-  list.add_with_default(
-          "ignore-mask-label", &raw.ignore_mask_label,
-          "mask value to leave out; -1: no masks, but the black borders that undistortion leaves "
-          "are left out (default with --mask-path: 0); -2: all pixels are used")
-      .range(-2, 65535)
-      .add("mask-path", &settings.survey.mask_folder,
-           "folder with a mask for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
-           "a.jpg, in the same subfolders as the images")
-      .sets("mask_folder");
+void declare_photographs(OptionList& list, Settings& settings) {
+  survey::declare_masks(list, settings.survey);
   io::declare_bit_depth(list, settings.survey.bit_depth);
-}
-
-void take_photographs(const Options& options, const Raw& raw, survey::Options& survey) {
-  const bool masks_given =
-      !survey.mask_folder.empty() && !given(options.parsed, "ignore-mask-label");
-  use_mask_label(survey, masks_given ? 0 : raw.ignore_mask_label);
-  survey.compares_photographs = true;
+  survey::declare_colors(list, settings.survey);
 }
 
 void convert(const Raw& raw, Options& options) {
@@ -88,7 +73,8 @@ void convert(const Raw& raw, Options& options) {
   settings.output =
       output_or(settings.output, without_known_extension(scene) += "_map", "--output-file");
   settings.up = map::parse_up(raw.up, settings.epsg);
-  take_photographs(options, raw, settings.survey);
+  survey::take_masks(options.parsed, settings.survey);
+  settings.survey.compares_photographs = true;
 }
 
 }  // namespace
@@ -105,7 +91,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   declare_io(program.visible, raw, options.settings);
   io::declare_scene_options(program.visible, raw.scene);
   declare_map(program.visible, raw, options.settings);
-  declare_photographs(program.visible, raw, options.settings);
+  declare_photographs(program.visible, options.settings);
   program.hidden.add("views-file", &options.settings.survey.views_file,
                      "text file with the IDs or names of the images to use, one per line");
   options.parsed = parse_options(argc, argv, program);

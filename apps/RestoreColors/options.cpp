@@ -12,14 +12,13 @@
 #include "io/images/bit_depth.h"
 #include "io/openmvs/scene_files.h"
 #include "io/openmvs/scene_options.h"
-#include "survey/survey.h"
+#include "survey/photograph_options.h"
 
 namespace axial::apps {
 namespace {
 
 // The values of the command line before they are checked and converted.
 struct Raw {
-  int ignore_mask_label = -1;
   std::string input, light = "auto", curve = "srgb", grey;
   io::SceneOptions scene;
 };
@@ -65,16 +64,8 @@ void declare(OptionList& list, Raw& raw, Settings& settings) {
       .add_with_default("jpeg-quality", &settings.jpeg_quality, "JPEG quality, 1 to 100")
       .range(1, 100)
       .add_with_default("masks", &settings.masks,
-                        "also write masks/, with 0 for pixels whose colour is not determined")
-      .add_with_default(
-          "ignore-mask-label", &raw.ignore_mask_label,
-          "mask value to leave out; -1: no masks, but the black borders that undistortion leaves "
-          "are left out (default with --mask-path: 0); -2: all pixels are used")
-      .range(-2, 65535)
-      .add("mask-path", &settings.survey.mask_folder,
-           "folder with a mask for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
-           "a.jpg, in the same subfolders as the images")
-      .sets("mask_folder");
+                        "also write masks/, with 0 for pixels whose colour is not determined");
+  survey::declare_masks(list, settings.survey);
   io::declare_bit_depth(list, settings.survey.bit_depth);
   io::declare_scene_options(list, raw.scene);
 }
@@ -88,9 +79,7 @@ void convert(const Raw& raw, Options& options) {
   if (raw.light == "lamp") settings.light = color::Light::lamp;
   settings.transfer = color::Transfer::parse(raw.curve);
   if (!raw.grey.empty()) settings.grey = grey_of(raw.grey);
-  const bool masks_given =
-      !settings.survey.mask_folder.empty() && !given(options.parsed, "ignore-mask-label");
-  use_mask_label(settings.survey, masks_given ? 0 : raw.ignore_mask_label);
+  survey::take_masks(options.parsed, settings.survey);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include "io/openmvs/scene_files.h"
 #include "io/openmvs/scene_options.h"
 #include "settings.h"
-#include "survey/survey.h"
+#include "survey/photograph_options.h"
 
 namespace axial::apps {
 namespace {
@@ -24,7 +24,6 @@ struct Raw {
   std::string input;
   std::vector<io::TexturedFormat> formats;
   io::SceneOptions scene;
-  int ignore_mask_label = -1;
   unsigned empty_color = 0xFF7F27;
   int packing_heuristic = 3;
 };
@@ -65,17 +64,10 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
       .range(0, 16)
       .add_with_default("min-resolution", &settings.survey.resolution.min,
                         "the longest side is not halved below this [px]")
-      .range(1, 1 << 16)
-      .add_with_default(
-          "ignore-mask-label", &raw.ignore_mask_label,
-          "mask value to leave out; -1: no masks, but the black borders that undistortion leaves "
-          "are left out (default with --mask-path: 0); -2: all pixels are used")
-      .range(-2, 65535)
-      .add("mask-path", &settings.survey.mask_folder,
-           "folder with a mask for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
-           "a.jpg, in the same subfolders as the images")
-      .sets("mask_folder");
+      .range(1, 1 << 16);
+  survey::declare_masks(list, settings.survey);
   io::declare_bit_depth(list, settings.survey.bit_depth);
+  survey::declare_colors(list, settings.survey);
 }
 
 void declare_texturing(OptionList& list, Raw& raw, texture::Options& options) {
@@ -134,9 +126,7 @@ void convert(const Raw& raw, Options& options) {
   settings.survey.files = io::scene_files(raw.scene, raw.input, options.parsed);
   if (settings.mesh.empty()) settings.mesh = io::cloud_beside(settings.survey.files.scene);
   take_output(raw, settings);
-  const bool masks_given =
-      !settings.survey.mask_folder.empty() && !given(options.parsed, "ignore-mask-label");
-  use_mask_label(settings.survey, masks_given ? 0 : raw.ignore_mask_label);
+  survey::take_masks(options.parsed, settings.survey);
   settings.survey.compares_photographs = true;
   for (unsigned k = 0; k < 3; ++k)
     settings.texture.empty_color[k] =

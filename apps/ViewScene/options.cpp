@@ -8,6 +8,7 @@
 #include "io/images/bit_depth.h"
 #include "io/openmvs/scene_files.h"
 #include "io/openmvs/scene_options.h"
+#include "survey/photograph_options.h"
 
 namespace axial::apps {
 namespace {
@@ -60,6 +61,7 @@ void declare(OptionList& list, Raw& raw, Options& options) {
       .range(16, 1 << 15);
   declare_survey(list, options);
   io::declare_bit_depth(list, options.survey.bit_depth);
+  survey::declare_colors(list, options.survey);
   io::declare_scene_options(list, raw.scene);
 }
 

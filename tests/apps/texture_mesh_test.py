@@ -5,7 +5,7 @@ import os
 import re
 
 from programs import contents, files_below, main, png, run, write
-from readers import Glb
+from readers import Glb, png_rows
 from tiny_scene import HEIGHT, WIDTH
 from worlds import Wall, turned, wall
 
@@ -119,6 +119,33 @@ class Tiles(TextureTest):
     def test_outputs_that_cannot_be_written(self):
         os.mkdir(self.path("work", "scene_texture.tile2-3.ply"))
         self.refuses_and_keeps("scene_texture.tile2-3.ply", *self.texture("--tiles", "3"))
+
+
+class Colours(TextureTest):
+    """--colors: red pictures of the wall in the place of the photographs."""
+
+    def colors(self):
+        samples, channels = png_rows(self.at("out0.png"))
+        return {tuple(row[i:i + 3]) for row in samples for i in range(0, len(row), channels)}
+
+    def test_the_texture_has_the_restored_colours(self):
+        self.put_restored()
+        self.succeeds(*self.texture("--colors", "restored", "-o", "out"))
+        of_seen_faces = self.colors() - {(255, 127, 39)}
+        self.assertGreater(len(of_seen_faces), 50)
+        self.assertEqual({color[1:] for color in of_seen_faces}, {(0, 0)})
+        self.succeeds(*self.texture("-o", "out"))
+        self.assertGreater(len({color[1:] for color in self.colors()}), 50)
+
+    def test_wrong_folders(self):
+        self.refuses_and_keeps("--colors", *self.texture("--colors", "restored"))
+        self.put_restored(height=HEIGHT - 1)
+        self.refuses_and_keeps("0000.png: is 96x71, but its photograph", *self.texture("--colors", "restored"))
+        self.put_restored()
+        os.remove(self.path("work", "restored", "0001.png"))
+        self.refuses_and_keeps("no colours for image", *self.texture("--colors", "restored"))
+        self.put_restored()
+        self.refuses_and_keeps("--output-file", *self.texture("--colors", "restored", "-o", "restored/000"))
 
 
 class Masks(TextureTest):

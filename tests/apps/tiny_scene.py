@@ -37,7 +37,7 @@ def texture(seed=5, size=64):
 
 
 @functools.cache
-def picture(centre, width=WIDTH, height=HEIGHT):
+def picture(centre, width=WIDTH, height=HEIGHT, only_red=False):
     """A PNG of the wall at z = DISTANCE, seen in air along +z from `centre`."""
     value = texture()
     focal = FOCAL * width / WIDTH
@@ -48,7 +48,7 @@ def picture(centre, width=WIDTH, height=HEIGHT):
             x = centre[0] + (u + 0.5 - width / 2) / focal * DISTANCE
             y = centre[1] + (v + 0.5 - height / 2) / focal * DISTANCE
             grey = int(255 * value(x, y))
-            row += [grey, 255 - grey, (grey * 3) % 256]
+            row += [grey, 0, 0] if only_red else [grey, 255 - grey, (grey * 3) % 256]
         rows.append(row)
     return png(rows, 2)
 
@@ -135,6 +135,11 @@ class TinyScene(ProgramTest):
         self.work, self.scene = self.path("work"), self.path("work", "scene.mvs")
         self.images = [self.path("colmap", "images", name) for name in names()]
         write(self.scene, mvs(self.images))
+
+    def put_restored(self, **more):
+        """Red pictures of the wall in work/restored, in the place of photographs without water."""
+        for centre, name in zip(CENTRES, names()):
+            write(self.path("work", "restored", name), picture(centre, only_red=True, **more))
 
     def densify(self, *arguments):
         return (*DENSIFY, "-i", self.scene, "-w", self.work, *arguments)
