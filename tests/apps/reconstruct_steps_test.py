@@ -13,6 +13,7 @@ from programs import main, without_streams
 from reconstruct_test import STEPS
 from stand_ins import StandIns
 
+from axial_pipeline import reconstruct_steps
 from axial_pipeline.run_file import write_run
 
 
@@ -152,6 +153,60 @@ class WithStandIns(StandIns):
         options += ["--matcher", "vocabulary", "--vocabulary", "lens"]
         self.assertEqual(self.done_before(*options), 2)
         self.assertEqual(self.done_before(*options), 11)
+
+    def test_colours_without_water(self):
+        self.add_to("RestoreColors", 'mkdir -p out/restored; echo \'{"light": "sun", "spread_before": 0.5, '
+                                     '"spread_after": 0.25}\' > out/restored/colors.json\n')
+        self.add_to("DensifyPointCloud", 'case "$*" in *scene_restored.mvs*) touch out/scene_restored.ply ;; esac\n')
+        self.add_to("MapSurface", 'case "$*" in *scene_map_raw*) for k in dem ortho views; do '
+                                  "touch out/scene_map_raw.$k.tif; done ;; esac\n")
+        self.assertEqual(self.done_before("--without", "page"), 0)
+        without = {step: json.loads((self.folder / f"out/steps/{step}.done.json").read_text()) for step in STEPS[:11]}
+        restore = ["--without", "page", "--restore-colors"]
+        self.assertEqual(self.done_before(*restore), 9)
+        out, commands = self.folder / "out", self.commands()[-5:]
+        mesh, scene = f"-m {out}/scene_dense_refined.ply", f"-i {out}/scene_dense.mvs"
+        self.assertEqual(commands, [
+            f"RestoreColors {scene} {mesh} -o {out}/restored --refractive 1",
+            f"DensifyPointCloud -i {out}/scene.mvs -w {out} --refractive 1 --colors {out}/restored "
+            f"-o {out}/scene_restored.mvs",
+            f"TextureMesh {scene} {mesh} -o {out}/scene_textured --export-type glb,ply --refractive 1 --colors "
+            f"{out}/restored",
+            f"MapSurface {scene} -m {out}/scene_textured.ply -o {out}/scene_map --refractive 1",
+            f"MapSurface {scene} {mesh} -o {out}/scene_map_raw --refractive 1 --image-noise 0"])
+        self.assertIn("- colours: daylight; the light of a point differs between photographs by 25.0 %, by 50.0 % "
+                      "before", (out / "report.md").read_text())
+        self.assertEqual(self.done_before(*restore), 14)
+        self.assertEqual(self.done_before(*restore, "--colors=--light sun"), 9)
+        (out / "restored" / "colors.json").unlink()
+        self.assertEqual(self.done_before(*restore, "--colors=--light sun"), 9)
+        said = self.succeeds("--without", "page")
+        self.assertEqual(said.count("done before"), 9)
+        self.assertIn("Of an earlier run, not of this one: scene_map_raw.dem.tif, scene_map_raw.ortho.tif", said)
+        again = {step: json.loads((self.folder / f"out/steps/{step}.done.json").read_text()) for step in STEPS[:11]}
+        self.assertEqual([one["chain"] for one in again.values()], [one["chain"] for one in without.values()])
+
+    def test_colours_without_water_and_other_options(self):
+        self.assertIn("--colors --light sun: is only for --restore-colors", self.refused("--colors=--light sun"))
+        for until in ("poses", "cloud", "mesh"):
+            self.assertIn(f"--restore-colors: is for textures, maps and the page, which --until {until} does not make",
+                          self.refused("--restore-colors", "--until", until))
+        steps = lambda **changes: [step.name for step in reconstruct_steps.steps(
+            options_of(restore_colors=True, **{"until": "page", **changes}), self.folder / "out")][7:]
+        every = ["mesh", "refine-mesh", "colors", "restored-cloud", "texture", "map", "raw-map", "page"]
+        self.assertEqual(steps(), every)
+        self.assertEqual(steps(densify="--remove-dmaps 1"), [name for name in every if name != "restored-cloud"])
+        self.assertEqual(steps(without="map"), [name for name in every if name not in ("map", "raw-map")])
+        self.assertEqual(steps(until="texture", tiles=3), every[:5])
+        commands = {step.name: " ".join(step.command) for step in reconstruct_steps.steps(options_of(
+            restore_colors=True, until="page", without="texture",
+            densify="--iters 1 --pinhole-export=e --report r.json"), self.folder / "out")}
+        restored = f"--colors {self.folder}/out/restored"
+        for name in ("restored-cloud", "map", "page"):
+            self.assertIn(restored, commands[name], name)
+        self.assertIn(f"-p {self.folder}/out/scene_restored.ply", commands["page"])
+        self.assertIn("--iters 1 --colors", commands["restored-cloud"])
+        self.assertNotIn(restored, commands["raw-map"])
 
     def test_an_earlier_survey_is_compared(self):
         self.write("before/scene_dense_mesh.ply", "")

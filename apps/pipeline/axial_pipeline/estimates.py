@@ -20,6 +20,7 @@ DEPTH_MEMORY = (150 << 20, 450)    # bytes, and a pixel of a depth map
 LEAST_SIDE, MOST_SIDE = 640, 2560  # of a depth map, with the default options [px]
 NEIGHBOURS = {"sequential": 16, "cascade": 8, "spatial": 30, "vocabulary": 100}  # pairs of a photograph, at most
 AFTER_THE_CLOUD = 1.5     # disk space with mesh, textures and page
+RESTORED_BYTES = 1        # a pixel of a photograph without water, as JPEG
 
 
 @dataclasses.dataclass
@@ -58,7 +59,10 @@ def needs_of(given, sizes):
                "poses": POSE_SECONDS * count, "depth maps": DEPTH_SECONDS * sum(depth) / 1e6}
     memory = max(min(cores, count) * FEATURE_MEMORY * max(seen), DEPTH_MEMORY[0] + DEPTH_MEMORY[1] * max(depth))
     disk = 2 * OF_FEATURE * sum(features) + (DEPTH_BYTES + CLOUD_BYTES) * sum(depth)
-    return Needs(seconds, memory, disk * (1 if given.until in ("poses", "cloud") else AFTER_THE_CLOUD), cores)
+    disk *= 1 if given.until in ("poses", "cloud") else AFTER_THE_CLOUD
+    if given.restore_colors:
+        disk += RESTORED_BYTES * sum(width * height for width, height in sizes)
+    return Needs(seconds, memory, disk, cores)
 
 
 def free_disk(out):

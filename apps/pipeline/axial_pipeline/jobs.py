@@ -13,7 +13,7 @@ import sys
 
 from . import cameras, files
 from .failure import Failure
-from .option_files import find_option
+from .option_files import without_options
 from .step_kinds import KINDS, NEEDS_OF_PLAN
 from .steps import Records, Step, chain_to, digest, read_record, record_file, step_of
 
@@ -207,17 +207,9 @@ class Survey:
 
 
 def without_export(command):
-    """The words of `command` without --pinhole-export, also in its shorter forms: this option needs
-    the cloud, which only the step "densify" makes."""
-    kept, words = [], iter(command)
-    for word in words:
-        # --p is the begin of --plan, too: the program refuses it.
-        if word.startswith("--pi") and find_option(word, ["--pinhole-export"]):
-            if "=" not in word:
-                next(words, None)  # the folder
-        else:
-            kept.append(word)
-    return kept
+    """The words of `command` without --pinhole-export: this option needs the cloud, which only the step "densify"
+    makes."""
+    return without_options(command, ["--pinhole-export"])
 
 
 def part_options(name):

@@ -37,6 +37,19 @@ def has_option(words, option):
     return any(find_option(word, [option]) for word in words)
 
 
+def without_options(words, options):
+    """The `words` without these options and their values, also in shorter forms. The begin "--p" stays: several
+    options have it, and the program refuses it."""
+    kept, left = [], iter(words)
+    for word in left:
+        if len(name_of(word)) > 3 and find_option(word, options):
+            if "=" not in str(word):
+                next(left, None)  # the value
+        else:
+            kept.append(word)
+    return kept
+
+
 def options_in(words):
     """Name and value of each option among `words`; the name is empty where there is none."""
     name = ""

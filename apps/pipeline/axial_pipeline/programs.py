@@ -7,8 +7,8 @@ import shlex
 from .failure import Failure
 from .running import answer_of
 
-NAMES = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh", "TextureMesh",
-         "MapSurface", "CompareSurveys", "ViewScene")  # of the programs that every run may need
+NAMES = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh", "RestoreColors",
+         "TextureMesh", "MapSurface", "CompareSurveys", "ViewScene")  # of the programs that every run may need
 # How a program is asked for its version, which is the first line that it prints.
 QUESTIONS = {"colmap": "help", **dict.fromkeys((*NAMES, "EvaluateReconstruction"), "--version")}
 MOST_SECONDS = 20
@@ -90,6 +90,10 @@ class Programs:
 
     def refine_mesh(self, scene, mesh, refined, *options):
         return [self.folder / "RefineMesh", "-i", scene, "-m", mesh, "-o", refined, *options]
+
+    def restore_colors(self, scene, mesh, folder, *options):
+        """The photographs of `scene` without water in `folder`."""
+        return [self.folder / "RestoreColors", "-i", scene, "-m", mesh, "-o", folder, *options]
 
     def texture_mesh(self, scene, mesh, textured, *options):
         """`textured`: without extension; see --export-type."""

@@ -22,7 +22,7 @@ import pathlib
 from . import cluster, control, dates, files, ownership, poses, still_features, video
 from .failure import Failure, run_main
 from .reconstruct_options import check_options, check_photographs, options, wanted_steps
-from .reconstruct_steps import best_mesh, steps
+from .reconstruct_steps import RESTORED, best_mesh, steps
 from .step_kinds import ORDER
 from .steps import run_all
 
@@ -71,6 +71,12 @@ def lines_of_accuracy(evaluation):
            f"{1e3 * accuracy['median']:.3f} mm, {accuracy['count']} points")
 
 
+def lines_of_colors(found):
+    light = {"sun": "daylight", "lamp": "lamps"}[found["light"]]
+    yield (f"- colours: {light}; the light of a point differs between photographs by {100 * found['spread_after']:.1f} "
+           f"%, by {100 * found['spread_before']:.1f} % before")
+
+
 def lines_from(file, lines_of):
     """The lines that `lines_of` makes of the JSON object in `file`."""
     try:
@@ -85,6 +91,8 @@ def report(out, seconds, more=()):
     lines = ["# Reconstruction", "", *lines_from(out / "refined" / "report.json", lines_of_poses)]
     if "evaluate" in seconds:
         lines += lines_from(out / "evaluation.json", lines_of_accuracy)
+    if "colors" in seconds:
+        lines += lines_from(out / RESTORED / "colors.json", lines_of_colors)
     lines += [f"- warning: {line}" for line in still_features.lines_about(out)]
     lines += [f"- {line}" for line in [*more, *poses.lines_about(out)]]
     lines += ["", "| step | seconds |", "|---|---|"]
@@ -116,6 +124,8 @@ def results_of(given, out):
     found = [("Cloud", out / "scene_dense.ply") if "densify" in wanted else ("Poses", out / "refined")]
     if "mesh" in wanted:
         found.append(("Mesh", out / textured if "texture" in wanted else best_mesh(given, out)))
+    if "colors" in wanted:
+        found.append(("Photographs without water", out / RESTORED))
     if "map" in wanted:
         found.append(("Maps", out / "scene_map.*"))
     if "compare" in wanted:

@@ -13,7 +13,7 @@ from .failure import Failure
 from .option_files import find_option, has_option
 from .ownership import is_record
 from .programs import NAMES, Programs, default_folder, require, words_of
-from .step_kinds import KINDS, OPTIONS, ORDER, RESULTS
+from .step_kinds import KINDS, OF_RESTORING, OPTIONS, ORDER, RESULTS
 from .steps import record_file
 
 SKIPPED = [name for name, kind in KINDS.items() if kind.can_be_left_out]
@@ -59,6 +59,8 @@ def options(script_folder, description, words=None):
     parser.add_argument("--check", action="store_true", help="check all inputs, look at the photographs, print "
                         "what was found and how much time, memory and disk space the run needs, and end")
     parser.add_argument("--keep-all", action="store_true", help="use blurred, dark and doubled photographs, too")
+    parser.add_argument("--restore-colors", action="store_true", help="give cloud, textures, maps and page the colours "
+                        "that the photographs have without water (docs/colors.md)")
     for name, program in OPTIONS.items():
         parser.add_argument(f"--{name}", default="",
                             help=f"more options for {program}, in one word" +
@@ -123,12 +125,36 @@ def skipped(given):
     return names
 
 
+def keeps_depth_maps(given):
+    return not has_option(words_of("densify", given), "--remove-dmaps")
+
+
+def is_of_restoring(name, given, left_out):
+    """Whether the step `name` of --restore-colors runs."""
+    return (given.restore_colors and (name != "restored-cloud" or keeps_depth_maps(given))
+            and (name != "raw-map" or "map" not in left_out))
+
+
+def check_restoring(given):
+    if given.colors and not given.restore_colors:
+        raise Failure(f"--colors {given.colors}: is only for --restore-colors")
+    if not given.restore_colors:
+        return
+    if RESULTS.index(given.until) < RESULTS.index(KINDS["colors"].result):
+        raise Failure("--restore-colors: is for textures, maps and the page, which --until "
+                      f"{given.until} does not make")
+    if not keeps_depth_maps(given):
+        print(f"--densify {given.densify}: without depth maps, the cloud keeps the colours of the photographs",
+              flush=True)
+
+
 def wanted_steps(given):
     """The names of the steps after the poses that run."""
     last, left_out = RESULTS.index(given.until), skipped(given)
     return [name for name, kind in KINDS.items()
             if kind.result and RESULTS.index(kind.result) <= last and name not in left_out
-            and (name != "compare" or given.earlier)]
+            and (name != "compare" or given.earlier)
+            and (name not in OF_RESTORING or is_of_restoring(name, given, left_out))]
 
 
 def check_results(given):
@@ -140,6 +166,7 @@ def check_results(given):
             raise Failure(f"--{name} {value}: contradicts --without {given.without}")
         if value and result and RESULTS.index(given.until) < RESULTS.index(result):
             raise Failure(f"--{name} {value}: {OPTIONS[name]} does not run with --until {given.until}")
+    check_restoring(given)
     if given.compare and not given.earlier:
         raise Failure(f"--compare {given.compare}: is only for --earlier")
     if given.earlier and given.until in ("poses", "cloud"):

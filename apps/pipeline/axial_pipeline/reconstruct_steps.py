@@ -5,15 +5,16 @@ import pathlib
 
 from . import (cameras, colmap, control, database, features, left_out, lenses, masks, matching, poses, positions,
                start_lens, still_features, turns, video)
-from .option_files import find_option, has_option, read_by
+from .option_files import find_option, has_option, read_by, without_options
 from .programs import Programs, words_of
-from .reconstruct_options import wanted_steps
+from .reconstruct_options import keeps_depth_maps, wanted_steps
 from .run_file import write_run
 from .running import logged, tell, told
 from .step_kinds import KINDS, writes_of
 from .steps import Files, Report, Step, Tiles
 
 RUN_FILE = "run.json"
+RESTORED = "restored"  # the folder of the photographs without water
 REFRACTIVE = ("--refractive", 1)
 
 
@@ -160,6 +161,28 @@ def cloud_steps(run):
                                                    *run.words("densify")), run.out / "scene_dense.ply")
 
 
+def colors(run, wanted, words):
+    """The option of a program that takes the colours of --restore-colors, unless it is among the `words` of the
+    user."""
+    return not_given_again([("--colors", run.out / RESTORED)] if "colors" in wanted else [], words)
+
+
+def color_steps(run, wanted):
+    """The photographs without water, and a cloud that has their colours."""
+    out = run.out
+    if "colors" in wanted:
+        command = run.programs.restore_colors(run.scene, best_mesh(run.given, out), out / RESTORED, *REFRACTIVE,
+                                              *run.words("colors"))
+        yield run.step("colors", command, Report(out / RESTORED / "colors.json"), anew=[out / RESTORED])
+    if "restored-cloud" in wanted:
+        # The same command as that of the step "densify", so that it takes the depth maps of this step.
+        words = without_options(run.words("densify"), ["--pinhole-export", "--report-file"])
+        command = run.programs.densify(out / "scene.mvs", out, *REFRACTIVE, *run.tiles(), *words,
+                                       *colors(run, wanted, words), "-o", out / "scene_restored.mvs")
+        yield run.step("restored-cloud", command, out / "scene_restored.ply",
+                       also=read_by(command, run.own("densify")))
+
+
 def mesh_steps(run, wanted):
     """The steps from the cloud to the mesh and its textures."""
     given, out, programs = run.given, run.out, run.programs
@@ -170,9 +193,11 @@ def mesh_steps(run, wanted):
     if "refine-mesh" in wanted:
         yield run.step("refine-mesh", programs.refine_mesh(run.scene, mesh, refined, *REFRACTIVE,
                                                            *run.words("refine-mesh")), refined)
+    yield from color_steps(run, wanted)
     if "texture" in wanted:
+        words = run.words("texture")
         command = programs.texture_mesh(run.scene, best_mesh(given, out), textured, "--export-type", "glb,ply",
-                                        *REFRACTIVE, *run.tiles(), *run.words("texture"))
+                                        *REFRACTIVE, *run.tiles(), *colors(run, wanted, words), *words)
         yield run.step("texture", command, Tiles(out, f"scene_textured.tile*-{given.tiles}.glb") if given.tiles > 1
                        else Files(textured.with_suffix(".glb"), textured.with_suffix(".ply")),
                        anew=run.made_before("texture"))
@@ -217,12 +242,13 @@ def words_about_surveys(words, known, earlier, scene):
 
 def words_about_results(run, wanted):
     """The options of ViewScene for the results of earlier steps, except those that the user gave."""
-    out, kept_maps = run.out, not has_option(run.own("densify"), "--remove-dmaps")
+    out, kept_maps = run.out, keeps_depth_maps(run.given)
     return not_given_again([("--run", out / RUN_FILE), ("--sfm-model", run.refined),
                             *([("--truth", run.given.truth)] if run.given.truth else []),
                             *([("--map", out / "scene_map")] if "map" in wanted else []),
                             *([("--change", out / "scene")] if "compare" in wanted else []),
-                            *([("--depth-maps", out)] if kept_maps else [])], run.own("page"))
+                            *([("--depth-maps", out)] if kept_maps else []),
+                            *([("--colors", out / RESTORED)] if "colors" in wanted else [])], run.own("page"))
 
 
 def write_run_before(name, given, out):
@@ -232,18 +258,38 @@ def write_run_before(name, given, out):
     write_run(out / RUN_FILE, given, todo[:number], out)
 
 
+def whole_mesh(run, wanted):
+    """The mesh for maps and page: textured if the textures are in one file."""
+    is_textured = "texture" in wanted and run.given.tiles == 1
+    return meshes(run.out)[2].with_suffix(".ply") if is_textured else best_mesh(run.given, run.out)
+
+
+def map_step(run, name, mesh, output, *options):
+    """The step `name`, which makes the maps of a mesh. Their names begin with `output`."""
+    words = run.words("map")
+    command = run.programs.map_surface(run.scene, mesh, output, *REFRACTIVE,
+                                       *mask_words(run.words("texture"), words), *options, *words)
+    made = [output.with_name(f"{output.name}.{kind}.tif") for kind in ("dem", "ortho", "views")]
+    also = [*read_by(command, run.own("texture")), *(read_by(command, run.own("map")) if name != "map" else [])]
+    return run.step(name, command, Files(*made), also=also,
+                    anew=run.made_before(name))  # not every command writes all of them again
+
+
+def map_steps(run, wanted):
+    """The maps and, with --restore-colors, maps with the colours of the photographs, too."""
+    mesh, out, words = whole_mesh(run, wanted), run.out, run.words("map")
+    if "map" in wanted:  # a textured mesh has its colours
+        of_mesh = colors(run, wanted, words) if mesh == best_mesh(run.given, out) else []
+        yield map_step(run, "map", mesh, out / "scene_map", *of_mesh)
+    if "raw-map" in wanted:
+        yield map_step(run, "raw-map", best_mesh(run.given, out), out / "scene_map_raw",
+                       *not_given_again([("--image-noise", "0")], words))
+
+
 def survey_steps(run, wanted):
     """The steps from the mesh to maps, to the comparison with an earlier survey, and to the page."""
     given, out, programs = run.given, run.out, run.programs
-    # For maps and page: textured if the textures are in one file.
-    whole = (best_mesh(given, out) if given.tiles > 1 or "texture" not in wanted
-             else meshes(out)[2].with_suffix(".ply"))
-    if "map" in wanted:
-        command = programs.map_surface(run.scene, whole, out / "scene_map", *REFRACTIVE,
-                                       *mask_words(run.words("texture"), run.words("map")), *run.words("map"))
-        yield run.step("map", command, Files(*(out / f"scene_map.{kind}.tif" for kind in ("dem", "ortho", "views"))),
-                       also=read_by(command, run.own("texture")),
-                       anew=run.made_before("map"))  # not every command writes all of them again
+    yield from map_steps(run, wanted)
     if "compare" in wanted:
         earlier, words = pathlib.Path(given.earlier).with_name(run.scene.name), run.words("compare")
         registration, places = words_about_registration(run, words)
@@ -252,7 +298,8 @@ def survey_steps(run, wanted):
         yield run.step("compare", command, out / "scene.change.json", reads=[given.earlier, earlier, *places[:1]],
                        anew=run.made_before("compare"))
     if "page" in wanted:
-        command = programs.view_scene(run.scene, out / "scene_dense.ply", whole, out / "page", *REFRACTIVE,
+        cloud = out / ("scene_restored.ply" if "restored-cloud" in wanted else "scene_dense.ply")
+        command = programs.view_scene(run.scene, cloud, whole_mesh(run, wanted), out / "page", *REFRACTIVE,
                                       *words_about_results(run, wanted), *run.words("page"))
         yield run.step("page", command, out / "page" / "index.html", also=[given.truth] if given.truth else [],
                        before=lambda: write_run_before("page", given, out))

@@ -53,10 +53,14 @@ KINDS = {
                  parts=("mesh-tile-*",)),
     "refine-mesh": Kind(["scene_dense_refined.*"], (8000, 4, 60, 1), "RefineMesh", result="mesh", can_be_left_out=True,
                         takes_masks=True, has_limits=True),
+    "colors": Kind(["restored"], (8000, 4, 60, 0.2), "RestoreColors", result="texture", takes_masks=True,
+                   has_limits=True),
+    "restored-cloud": Kind(["scene_restored.*"], (4000, 0, 60, 0.2), result="texture", has_limits=True),
     "texture": Kind([f"scene_textured{tile}{end}" for tile in ("", TILE) for end in TEXTURED], (8000, 4, 60, 0.5),
                     "TextureMesh", result="texture", can_be_left_out=True, takes_masks=True, has_limits=True),
     "map": Kind([f"scene_map.{kind}" for kind in MAPS], (8000, 4, 60, 0.5), "MapSurface", result="map",
                 can_be_left_out=True, has_limits=True),  # gets the masks of "texture"
+    "raw-map": Kind([f"scene_map_raw.{kind}" for kind in MAPS], (8000, 4, 60, 0.5), result="map", has_limits=True),
     "compare": Kind([f"{name}.{kind}" for name in ("scene.change", "scene_change")  # the last: of older versions
                      for kind in CHANGES], (8000, 4, 30, 0.1), "CompareSurveys", result="mesh",
                     has_limits=True),
@@ -65,6 +69,7 @@ KINDS = {
     "evaluate": Kind(["evaluation.json"], (8000, 0, 60, 0))}
 ORDER = list(KINDS)
 NEEDS_OF_PLAN = (2000, 2, 30, 0.02)  # as needs, of the job "plan"
+OF_RESTORING = ("colors", "restored-cloud", "raw-map")  # steps of --restore-colors
 # The options whose words are options for a program, and this program.
 OPTIONS = {kind.option or name: kind.program for name, kind in KINDS.items() if kind.program}
 RESULTS = ("poses", *dict.fromkeys(kind.result for kind in KINDS.values() if kind.result))  # of --until
