@@ -23,6 +23,7 @@
 #include "io/textured/textured_mesh.h"
 #include "maps.h"
 #include "residuals.h"
+#include "restored.h"
 #include "run.h"
 #include "scene/check_mesh.h"
 #include "scene/resolution.h"
@@ -207,13 +208,15 @@ Json write_cameras(const Contents& contents, const fs::path& staging, const Cont
   return cameras;
 }
 
-// Adds the maps, the run and the depth maps to `data`.
+// Adds the maps, the run, the depth maps and the restored colours to `data`.
 void add_survey(const Contents& contents, const Options& options, const fs::path& staging,
-                Json& data) {
+                Json& data, const Context& context) {
   if (!options.run.empty()) data["run"] = run_report(options.run);
   if (Json maps = write_maps(options.maps, staging); !maps.is_null()) data["map"] = std::move(maps);
   Json depths = write_depth_maps(contents.survey.scene, options.depth_maps, staging);
   if (!depths.empty()) data["depth_maps"] = std::move(depths);
+  if (!options.survey.color_folder.empty())
+    data["colors"] = restored_colors(contents.survey, staging, context);
 }
 
 Json files_of(const Options& options) {
@@ -253,7 +256,7 @@ void write_contents(const Contents& contents, const Options& options, const fs::
                   {"radius", first.radius},
                   {"towards", list(first.towards)},
                   {"up", list(first.up)}};
-  add_survey(contents, options, staging, data);
+  add_survey(contents, options, staging, data, context);
   if (!options.sfm_model.empty()) data["residuals"] = residual_data(scene, options.sfm_model);
   if (!contents.distances.empty()) data["truth"] = options.truth.filename().string();
   data["cameras"] = write_cameras(contents, staging, context);

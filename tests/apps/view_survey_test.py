@@ -84,6 +84,18 @@ class SurveyCase(ViewCase):
                 shutil.copy(os.path.join(self.made.work, name), self.work)
         write(self.path("work", "run.json"), json.dumps(RUN))
 
+    def put_colors(self, **changes):
+        """Restored photographs, and what RestoreColors found. Returns this."""
+        self.put_restored()
+        number = {"value": 0.25, "sigma": 0.0125}
+        channel = {"a_per_m": number, "b_per_m": number, "veil": number, "determined": True}
+        found = {"light": "sun", "white": "grey seabed", "spread_before": 0.125, "spread_after": 0.0625,
+                 "channels": {"red": {"determined": False}, "green": channel, "blue": channel},
+                 "brightness_by_way": [{"way_m": way, "before": [1 / way, 1, 2 / way], "after": [1, 1, 1]}
+                                       for way in (1, 2, 3)], **changes}
+        write(self.path("work", "restored", "colors.json"), json.dumps(found))
+        return found
+
     def survey(self, *more):
         return self.view(*SURVEY, *more)
 
@@ -153,6 +165,37 @@ class Folder(SurveyCase):
         os.mkdir(self.path("work", "empty"))
         self.refuses_and_keeps("has no depth map of the scene's photographs, such as depth0000.dmap",
                                *self.view("--depth-maps", "empty"))
+
+    def test_restored_colours_are_shown_beside_the_photographs(self):
+        self.put_colors()
+        self.succeeds(*self.view("--colors", "restored"))
+        colors = self.shown()["colors"]
+        self.assertEqual([picture["name"] for picture in colors["pictures"]], ["0000.png", "0001.png", "0002.png"])
+        names = files_below(self.report)
+        for picture in colors["pictures"]:
+            self.assertLess({picture["before"], picture["after"]}, names)
+        self.assertEqual([channel["determined"] for channel in colors["channels"]], [False, True, True])
+        self.assertEqual([row["way_m"] for row in colors["by_way"]], [1, 2, 3])
+        self.put_colors(brightness_by_way=[])
+        os.remove(self.path("work", "restored", "colors.json"))
+        self.assertIn("warning: ", self.succeeds(*self.view("--colors", "restored")).stdout)
+        self.assertEqual(list(self.shown()["colors"]), ["pictures"])
+        self.succeeds(*self.view())
+        self.assertNotIn("colors", self.shown())
+
+    def test_a_malformed_file_of_restored_colours_is_refused(self):
+        found = self.put_colors()
+        lamp = {**found, "light": "lamp"}
+        row = found["brightness_by_way"][0]
+        wrong = [("light 7: must be a text", {**found, "light": 7}),
+                 ('light "moon": must be sun or lamp', {**found, "light": "moon"}),
+                 ("spread_after is missing", {k: v for k, v in found.items() if k != "spread_after"}),
+                 ("channels.green.loss_per_m is missing", lamp),
+                 ("brightness_by_way[0].after [1]: must be three numbers",
+                  {**found, "brightness_by_way": [{**row, "after": [1]}]})]
+        self.refuses_contents(self.path("work", "restored", "colors.json"), self.view("--colors", "restored"),
+                              ("colors.json: ", "{"),
+                              *(("colors.json: " + expected, json.dumps(file)) for expected, file in wrong))
 
     def test_wrong_files_are_refused(self):
         change = json.loads(self.at("survey.change.json"))
@@ -325,6 +368,22 @@ class Page(SurveyCase):
                      "bar target 1-target 2", "target 7", "1.50, -2.25, –", "image 7 has <no> neighbours",
                      "low contrast (4 times)", "'--images=my photographs'"):
             self.assertIn(part, text)
+
+    def test_the_tab_of_colours_compares_photographs(self):
+        self.put_colors()
+        page = SurveyCase.opened(self, "--colors", "restored")
+        page.click_on("[data-tab=restored]")
+        text = page.value("document.getElementById('restored').innerText")
+        for part in ("daylight", "grey seabed", "12.5 %", "6.3 %", "red\tnot determined", "0.250 ± 0.013 /m"):
+            self.assertIn(part, text)
+        self.assertEqual(page.value("document.querySelectorAll('#by-way polyline').length"), 6)
+        self.assertEqual(page.value("document.querySelectorAll('#restored figure').length"), 3)
+        loaded = "[...document.querySelectorAll('#restored img')].every(image => image.naturalWidth === 96)"
+        page.wait_for(loaded)
+        page.value("(slider => { slider.value = 20; slider.dispatchEvent(new Event('input')); })"
+                   "(document.querySelector('#restored input'))")
+        self.assertIn("80%", page.value("document.querySelector('#restored .over').style.clipPath"))
+        self.assertEqual(page.errors, [])
 
     def test_a_narrow_page_works_with_touch(self):
         page = self.opened(width=390, height=844, touch=True)

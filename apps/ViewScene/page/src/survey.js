@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tabs "Map" and "Run", which a folder has if ViewScene was given their files.
+// The tabs "Map", "Colours" and "Run", which a folder has if ViewScene was given their files.
 import { byId } from "./elements.js";
 import { startMap } from "./map_panel.js";
+import { showRestored } from "./restored.js";
 import { showRun } from "./run.js";
 
 let map = null;
@@ -12,6 +13,10 @@ export function startSurvey(scene, show) {
   if (scene.run) {
     tabOf("run").hidden = false;
     showRun(scene.run);
+  }
+  if (scene.colors) {
+    tabOf("restored").hidden = false;
+    showRestored(scene.colors);
   }
   if (!scene.map) return null;
   tabOf("map").hidden = false;

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "restored.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "base/atomic_file.h"
+#include "base/parallel.h"
+#include "io/images/image.h"
+#include "json_fields.h"
+#include "scene/resolution.h"
+
+namespace axial::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostCompared = 6;
+constexpr int kComparedWidth = 800;      // of the pictures, at most [px]
+constexpr int kComparedQuality = 88;     // of JPEG files
+constexpr int kBitsOfRestored = 16;      // that the values of restored pictures of 16 bits use
+constexpr std::size_t kMostWays = 1000;  // points of the chart
+
+bool flag_of(const JsonField& field) {
+  if (!field.value.is_boolean()) field.refuse("true or false");
+  return field.value.get<bool>();
+}
+
+std::string choice_of(const JsonField& field, std::initializer_list<const char*> choices,
+                      const std::string& wanted) {
+  const std::string text = field.text();
+  if (std::ranges::find(choices, text) == choices.end()) field.refuse(wanted);
+  return text;
+}
+
+Json estimate_of(const JsonField& channel, const char* key, const char* name, const char* unit) {
+  const JsonField estimate = channel.at(key);
+  return {{"name", name},
+          {"unit", unit},
+          {"value", estimate.at("value").number()},
+          {"sigma", estimate.at("sigma").number_from_0()}};
+}
+
+Json values_of(const JsonField& channel, bool by_sun) {
+  if (!by_sun)
+    return Json::array({{{"name", "loss"},
+                         {"unit", "/m"},
+                         {"value", channel.at("loss_per_m").number()},
+                         {"sigma", Json()}}});
+  return Json::array({estimate_of(channel, "a_per_m", "loss a", "/m"),
+                      estimate_of(channel, "b_per_m", "rate of the veil b", "/m"),
+                      estimate_of(channel, "veil", "veil B", "")});
+}
+
+Json channels_of(const JsonField& channels, bool by_sun) {
+  Json list = Json::array();
+  for (const char* name : {"red", "green", "blue"}) {
+    const JsonField channel = channels.at(name);
+    const bool is_determined = flag_of(channel.at("determined"));
+    list.push_back({{"name", name},
+                    {"determined", is_determined},
+                    {"values", is_determined ? values_of(channel, by_sun) : Json::array()}});
+  }
+  return list;
+}
+
+Json three_of(const JsonField& field) {
+  const std::vector<JsonField> elements = field.elements();
+  if (elements.size() != 3) field.refuse("three numbers");
+  Json numbers = Json::array();
+  for (const JsonField& element : elements) numbers.push_back(element.number_from_0());
+  return numbers;
+}
+
+Json ways_of(const JsonField& field) {
+  Json list = Json::array();
+  const std::vector<JsonField> rows = field.elements();
+  if (rows.size() > kMostWays)
+    fail_in(field.file, "{} has more than {} rows", field.name, kMostWays);
+  for (const JsonField& row : rows)
+    list.push_back({{"way_m", row.at("way_m").number_from_0()},
+                    {"before", three_of(row.at("before"))},
+                    {"after", three_of(row.at("after"))}});
+  return list;
+}
+
+void add_findings(const fs::path& file, Json& data) {
+  const JsonField whole{file, "", io::read_json(file)};
+  data["light"] = choice_of(whole.at("light"), {"sun", "lamp"}, "sun or lamp");
+  data["white"] =
+      choice_of(whole.at("white"), {"grey patch", "grey seabed"}, "grey patch or grey seabed");
+  for (const char* key : {"spread_before", "spread_after"})
+    data[key] = whole.at(key).number_from_0();
+  data["channels"] = channels_of(whole.at("channels"), data["light"] == "sun");
+  if (whole.value.contains("brightness_by_way"))
+    data["by_way"] = ways_of(whole.at("brightness_by_way"));
+}
+
+void write_picture(const fs::path& file, const fs::path& from, int bits) {
+  const cv::Mat3b pixels = io::in_8_bits(io::read_photograph(from).pixels, bits);
+  const double scale = std::min(1.0, static_cast<double>(kComparedWidth) / pixels.cols);
+  const cv::Size size(static_cast<int>(std::lround(scale * pixels.cols)),
+                      std::max(1, static_cast<int>(std::lround(scale * pixels.rows))));
+  io::write_jpeg(file, resized_image(pixels, size), kComparedQuality);
+}
+
+// The views whose photographs are compared.
+std::vector<std::size_t> compared_views(std::size_t views) {
+  const std::size_t count = std::min(views, kMostCompared);
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(i * views / count);
+  return chosen;
+}
+
+}  // namespace
+
+Json restored_colors(const survey::Survey& survey, const fs::path& staging,
+                     const Context& context) {
+  Json data = Json::object();
+  const fs::path file = survey.options.color_folder / "colors.json";
+  std::error_code error;
+  if (fs::exists(file, error))
+    add_findings(file, data);
+  else
+    context.warning("{}: is not there: the page shows no numbers about water and light",
+                    file.string());
+  make_folder(staging / "colors");
+  const std::vector<std::size_t> views = compared_views(survey.views.size());
+  std::vector<Json> pictures(views.size());
+  for_each_in_flight(views.size(), thread_count(), [&](std::size_t i) {
+    const survey::View& view = survey.views[views[i]];
+    const std::string before = fmt::format("colors/{:05}.before.jpg", views[i]);
+    const std::string after = fmt::format("colors/{:05}.after.jpg", views[i]);
+    write_picture(staging / before, view.file, survey.bit_depth);
+    write_picture(staging / after, view.colors, kBitsOfRestored);
+    pictures[i] = {{"name", view.file.filename().string()}, {"before", before}, {"after", after}};
+  });
+  data["pictures"] = pictures;
+  return data;
+}
+
+}  // namespace axial::apps
