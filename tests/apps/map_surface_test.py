@@ -48,6 +48,19 @@ class Files(MapTest):
             self.assertEqual(self.at(name), plain[name], name)
         self.nearly_equal(read_geotiff(plain["scene_map.ortho.tif"]).rows, self.read_map("ortho").rows)
 
+    def test_colours_of_another_folder(self):
+        self.put_restored()
+        self.succeeds(*self.map())
+        heights = self.at("scene_map.dem.tif")
+        told = "--colors: without effect on a mesh that has textures"
+        self.assertNotIn(told, self.succeeds(*self.map("--colors", "restored")).stdout)
+        self.assertEqual(self.at("scene_map.dem.tif"), heights)
+        shown = {pixel[:3] for row in self.read_map("ortho").rows for pixel in row if pixel[3]}
+        self.assertGreater(len(shown), 50)
+        self.assertEqual({color[1:] for color in shown}, {(0, 0)})
+        self.succeeds(*self.command("TextureMesh", "-o", "textured"))
+        self.assertIn(told, self.succeeds(*self.map("-m", "textured.ply", "--colors", "none")).stdout)
+
 
 class Pixels(MapTest):
     """The cameras look along z, so that the map's plane has the upward direction -z, and the map's

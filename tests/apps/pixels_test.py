@@ -6,7 +6,7 @@ import re
 import struct
 
 from programs import main, png, read, write
-from readers import Dmap, png_rows
+from readers import Dmap, Ply, png_rows
 from tiny_scene import WIDTH, TinyScene
 from worlds import housing
 
@@ -54,6 +54,29 @@ class Pixels(TinyScene):
             middle = WIDTH // 2
             self.assertFalse(any(depth > 0 for row in rows for depth in row[:middle]))
             self.assertTrue(any(depth > 0 for row in rows for depth in row[middle:]))
+
+    def colors(self, name):
+        return [tuple(vertex[channel][0] for channel in ("red", "green", "blue"))
+                for vertex in Ply(self.at(name)).vertices]
+
+    def test_a_cloud_takes_colours_from_another_folder_and_depth_maps_do_not(self):
+        self.put_restored()
+        self.succeeds(*self.densify())
+        points = Ply(self.at("scene_dense.ply")).points
+        restored = self.densify("--colors", "restored", "-o", "restored_cloud.mvs")
+        self.assertIn("All 3 depth maps exist already", self.succeeds(*restored).stdout)
+        self.assertEqual(Ply(self.at("restored_cloud.ply")).points, points)
+        self.assertEqual({color[1:] for color in self.colors("restored_cloud.ply")}, {(0, 0)})
+        self.assertGreater(len({color[1:] for color in self.colors("scene_dense.ply")}), 50)
+
+    def test_other_colours_make_a_tile_again(self):
+        self.put_restored()
+        self.succeeds(*self.densify())
+        tile = self.densify("--colors", "restored", "--tile", "1/2")
+        for expected in (False, True):
+            self.assertEqual("exists already, " in self.succeeds(*tile).stdout, expected)
+        write(self.path("work", "restored", "0001.png"), self.stored[1])
+        self.assertNotIn("exists already, ", self.succeeds(*tile).stdout)
 
     def test_all_programs_refuse_a_file_alike(self):
         lens, image = self.path("colmap", "sparse", "cameras.txt"), self.images[1]

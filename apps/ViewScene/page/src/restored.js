@@ -16,9 +16,11 @@ const findings = colors => [
   table([["Light", LIGHTS[colors.light]], ["White", colors.white],
          ["Differences of a point before", percent(colors.spread_before)],
          ["and after", percent(colors.spread_after)]]),
-  make("p", { class: "hint" }, "Differences of the light of a point of the surface between photographs."),
+  make("p", { class: "hint" }, "Of the light of a point of the surface between photographs, as a share of how much " +
+    "points differ."),
   make("h2", {}, "Water"), table(colors.channels.flatMap(rowsOf), "number"),
-  ...colors.light === "sun" ? [make("p", { class: "hint" }, "± is one standard deviation.")] : []];
+  make("p", { class: "hint" }, colors.light === "sun" ? "± is one standard deviation."
+    : "On one way. The light of the lamps is a grid over image and distance, which starts from this loss.")];
 
 /** An element of SVG with attributes and children. */
 function draw(name, attributes, ...children) {
