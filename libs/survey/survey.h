@@ -24,13 +24,13 @@ namespace axial::survey {
 struct View {
   CameraModel camera;
   Pose pose;
-  std::size_t image = 0;          // index into Scene::images
-  std::uint32_t id = 0;           // SceneImage::id, or the index of the image if that is kNoId
-  std::filesystem::path file;     // the photograph; of a survey in memory: SceneImage::path
-  io::ImageHeader header;         // of the photograph
-  std::filesystem::path mask;     // file of the mask; empty: none
-  std::filesystem::path colors;   // file of Options::color_folder; empty: the photograph
-  io::ImageHeader colors_header;  // of `colors`
+  std::size_t image = 0;               // index into Scene::images
+  std::uint32_t id = 0;                // SceneImage::id, or the index of the image if that is kNoId
+  std::filesystem::path file;          // the photograph; of a survey in memory: SceneImage::path
+  io::ImageHeader header;              // of the photograph
+  std::filesystem::path mask;          // file of the mask; empty: none
+  std::filesystem::path colors = {};   // file of Options::color_folder; empty: the photograph
+  io::ImageHeader colors_header = {};  // of `colors`
 
   // The number of pixels of the camera.
   std::uint64_t pixels() const {

@@ -63,6 +63,15 @@ class Jobs(InFolder):
         self.assertEqual(one_step.limits_of(["bin/MapSurface", "--max-t", "1", "--max-mem=9"], 2, 1000), [])
         self.assertEqual(one_step.limits_of(["bin/ViewScene"], 2, 1000), [])
 
+    def test_steps_of_restored_colours_are_jobs(self):
+        survey = self.survey(until="texture", restore_colors=True, tiles=3)
+        for name, before in (("colors", "refine-mesh"), ("restored-cloud", "colors"), ("texture", "restored-cloud")):
+            self.assertEqual(survey.job(name).needs, [steps.record_file(before)])
+        self.assertEqual(survey.asked("restored-cloud"), survey.asked("densify"))
+        self.assertEqual(survey.tiles_of("restored-cloud"), [])
+        self.assertEqual(one_step.limits_of(survey.step("colors")[0].command, 2, 1000),
+                         ["--max-threads", "2", "--max-memory", "800"])
+
     def test_only_fusion_exports(self):
         for export in ("--pinhole-export export", "--pinhole-export=export", "--pinhole export"):
             survey = self.survey(densify=f"--iters 2 {export} --tiles 4")

@@ -90,7 +90,7 @@ class Commands(unittest.TestCase):
 
 class Estimates(InFolder):
     def needs(self, count, size=(6000, 4000), **more):
-        given = argparse.Namespace(**{"until": "cloud", "matcher": "exhaustive", **more})
+        given = argparse.Namespace(**{"until": "cloud", "matcher": "exhaustive", "restore_colors": False, **more})
         return estimates.needs_of(given, [size] * count)
 
     def test_pairs_dominate_large_surveys(self):
@@ -108,6 +108,10 @@ class Estimates(InFolder):
         self.assertEqual(estimates.depth_pixels((1280, 960)), 640 * 480)
         self.assertEqual(estimates.depth_pixels((1270, 960)), 1270 * 960)
         self.assertEqual(estimates.depth_pixels((10240, 5120)), 2560 * 1280)
+
+    def test_photographs_without_water_need_disk_space(self):
+        more = self.needs(10, until="page", restore_colors=True).disk - self.needs(10, until="page").disk
+        self.assertEqual(more, 10 * 6000 * 4000)
 
     def test_what_is_scarce_is_said(self):
         needs = self.needs(100)

@@ -198,6 +198,9 @@ class WithStandIns(StandIns):
         self.assertEqual(steps(densify="--remove-dmaps 1"), [name for name in every if name != "restored-cloud"])
         self.assertEqual(steps(without="map"), [name for name in every if name not in ("map", "raw-map")])
         self.assertEqual(steps(until="texture", tiles=3), every[:5])
+        of_date = [step.name for step in reconstruct_steps.steps(options_of(
+            restore_colors=True, until="page", dates="exif", date="2024-05-31", joint="joint"), self.folder / "out")]
+        self.assertEqual(of_date, ["import", "densify", *every])
         commands = {step.name: " ".join(step.command) for step in reconstruct_steps.steps(options_of(
             restore_colors=True, until="page", without="texture",
             densify="--iters 1 --pinhole-export=e --report r.json"), self.folder / "out")}

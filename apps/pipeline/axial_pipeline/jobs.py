@@ -147,7 +147,7 @@ class Survey:
     def asked(self, name, share=1):
         """Megabytes and minutes to ask for. `share`: the part of the images of which a job makes a tile, which has a
         margin: a tile is counted as twice its share."""
-        if name == "densify" and (self.out / PLAN).exists():
+        if name in ("densify", "restored-cloud") and (self.out / PLAN).exists():
             return self.with_margin(self.planned()["fusion"])
         memory, memory_of_image, minutes, minutes_of_image = NEEDS_OF_PLAN if name == "plan" else KINDS[name].needs
         images, more_minutes = share * self.images, minutes_of_image * share * self.images
