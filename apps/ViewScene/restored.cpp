@@ -51,9 +51,12 @@ Json values_of(const JsonField& channel, bool by_sun) {
                          {"unit", "/m"},
                          {"value", channel.at("loss_per_m").number()},
                          {"sigma", Json()}}});
-  return Json::array({estimate_of(channel, "a_per_m", "loss a", "/m"),
-                      estimate_of(channel, "b_per_m", "rate of the veil b", "/m"),
-                      estimate_of(channel, "veil", "veil B", "")});
+  Json values = Json::array({estimate_of(channel, "a_per_m", "loss a", "/m"),
+                             estimate_of(channel, "b_per_m", "rate of the veil b", "/m"),
+                             estimate_of(channel, "veil", "veil B", "")});
+  if (channel.value.contains("daylight_per_m"))
+    values.push_back(estimate_of(channel, "daylight_per_m", "loss of daylight by depth", "/m"));
+  return values;
 }
 
 Json channels_of(const JsonField& channels, bool by_sun) {
@@ -61,9 +64,12 @@ Json channels_of(const JsonField& channels, bool by_sun) {
   for (const char* name : {"red", "green", "blue"}) {
     const JsonField channel = channels.at(name);
     const bool is_determined = flag_of(channel.at("determined"));
+    const bool is_assumed = channel.value.contains("assumed") && flag_of(channel.at("assumed"));
+    const bool has_values = is_determined || is_assumed;
     list.push_back({{"name", name},
                     {"determined", is_determined},
-                    {"values", is_determined ? values_of(channel, by_sun) : Json::array()}});
+                    {"assumed", is_assumed},
+                    {"values", has_values ? values_of(channel, by_sun) : Json::array()}});
   }
   return list;
 }
@@ -72,7 +78,7 @@ Json three_of(const JsonField& field) {
   const std::vector<JsonField> elements = field.elements();
   if (elements.size() != 3) field.refuse("three numbers");
   Json numbers = Json::array();
-  for (const JsonField& element : elements) numbers.push_back(element.number_from_0());
+  for (const JsonField& element : elements) numbers.push_back(element.number());
   return numbers;
 }
 
@@ -95,6 +101,7 @@ void add_findings(const fs::path& file, Json& data) {
       choice_of(whole.at("white"), {"grey patch", "grey seabed"}, "grey patch or grey seabed");
   for (const char* key : {"spread_before", "spread_after"})
     data[key] = whole.at(key).number_from_0();
+  if (whole.value.contains("water_type")) data["water"] = whole.at("water_type").text();
   data["channels"] = channels_of(whole.at("channels"), data["light"] == "sun");
   if (whole.value.contains("brightness_by_way"))
     data["by_way"] = ways_of(whole.at("brightness_by_way"));

@@ -16,10 +16,10 @@ namespace axial::apps {
 //
 // If Options::color_folder has the file colors.json (docs/formats.md, "Colours without water"), the
 // object also has "light" and "white", texts; "spread_before" and "spread_after"; "channels", a
-// list of objects with "name", "determined" and "values", of which each has "name", "value" and, if
-// it is known, "sigma"; and, if the file has it, "by_way": a list of objects with "way_m", "before"
-// and "after", the last two of R, G and B. Error that names the file and the field if it is
-// malformed.
+// list of objects with "name", "determined", "assumed" and "values", of which each has "name",
+// "unit", "value" and "sigma" (null: not known); and, if the file has them, "water", the type of
+// water, and "by_way": a list of objects with "way_m", "before" and "after", the last two of R, G
+// and B. Error that names the file and the field if it is malformed.
 nlohmann::ordered_json restored_colors(const survey::Survey& survey,
                                        const std::filesystem::path& staging,
                                        const Context& context);

@@ -210,6 +210,12 @@ class WithStandIns(StandIns):
         self.assertIn(f"-p {self.folder}/out/scene_restored.ply", commands["page"])
         self.assertIn("--iters 1 --colors", commands["restored-cloud"])
         self.assertNotIn(restored, commands["raw-map"])
+        masked = {step.name: " ".join(step.command) for step in reconstruct_steps.steps(options_of(
+            restore_colors=True, until="page", masks="masks", colors="--light lamp"), self.folder / "out")}
+        masks = f"--mask-path {self.folder}/out/colmap_masks"
+        self.assertTrue(masked["colors"].endswith(f"{masks} --light lamp"), masked["colors"])
+        for name in ("restored-cloud", "texture", "map", "raw-map"):
+            self.assertIn(masks, masked[name])
 
     def test_an_earlier_survey_is_compared(self):
         self.write("before/scene_dense_mesh.ply", "")

@@ -90,7 +90,9 @@ class SurveyCase(ViewCase):
         number = {"value": 0.25, "sigma": 0.0125}
         channel = {"a_per_m": number, "b_per_m": number, "veil": number, "determined": True}
         found = {"light": "sun", "white": "grey seabed", "spread_before": 0.125, "spread_after": 0.0625,
-                 "channels": {"red": {"determined": False}, "green": channel, "blue": channel},
+                 "channels": {"red": {"determined": False}, "green": channel,
+                              "blue": {**channel, "determined": False, "assumed": True, "daylight_per_m": number}},
+                 "water_type": "jerlov-IB",
                  "brightness_by_way": [{"way_m": way, "before": [1 / way, 1, 2 / way], "after": [1, 1, 1]}
                                        for way in (1, 2, 3)], **changes}
         write(self.path("work", "restored", "colors.json"), json.dumps(found))
@@ -174,7 +176,7 @@ class Folder(SurveyCase):
         names = files_below(self.report)
         for picture in colors["pictures"]:
             self.assertLess({picture["before"], picture["after"]}, names)
-        self.assertEqual([channel["determined"] for channel in colors["channels"]], [False, True, True])
+        self.assertEqual([len(channel["values"]) for channel in colors["channels"]], [0, 3, 4])
         self.assertEqual([row["way_m"] for row in colors["by_way"]], [1, 2, 3])
         self.put_colors(brightness_by_way=[])
         os.remove(self.path("work", "restored", "colors.json"))
@@ -374,7 +376,8 @@ class Page(SurveyCase):
         page = SurveyCase.opened(self, "--colors", "restored")
         page.click_on("[data-tab=restored]")
         text = page.value("document.getElementById('restored').innerText")
-        for part in ("daylight", "grey seabed", "12.5 %", "6.3 %", "red\tnot determined", "0.250 ± 0.013 /m"):
+        for part in ("daylight", "grey seabed", "12.5 %", "6.3 %", "red\tnot determined", "jerlov-IB",
+                     "green, loss a\t0.250 ± 0.013 /m", "blue, loss of daylight by depth, assumed"):
             self.assertIn(part, text)
         self.assertEqual(page.value("document.querySelectorAll('#by-way polyline').length"), 6)
         self.assertEqual(page.value("document.querySelectorAll('#restored figure').length"), 3)

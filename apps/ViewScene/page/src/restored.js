@@ -9,11 +9,13 @@ const percent = value => `${(100 * value).toFixed(1)} %`;
 const estimate = ({ value, sigma, unit }) =>
   `${value.toFixed(3)}${sigma === null ? "" : ` ± ${sigma.toFixed(3)}`}${unit ? ` ${unit}` : ""}`;
 
-const rowsOf = ({ name, determined, values }) => determined
-  ? values.map(value => [`${name}, ${value.name}`, estimate(value)]) : [[name, "not determined: left as it is"]];
+const rowsOf = ({ name, assumed, values }) => values.length
+  ? values.map(value => [`${name}, ${value.name}${assumed ? ", assumed" : ""}`, estimate(value)])
+  : [[name, "not determined: left as it is"]];
 
 const findings = colors => [
   table([["Light", LIGHTS[colors.light]], ["White", colors.white],
+         ...colors.water ? [["Water like", colors.water]] : [],
          ["Differences of a point before", percent(colors.spread_before)],
          ["and after", percent(colors.spread_after)]]),
   make("p", { class: "hint" }, "Of the light of a point of the surface between photographs, as a share of how much " +
@@ -37,7 +39,7 @@ function chart(rows) {
   const ways = rows.map(row => row.way_m), low = Math.min(...ways), high = Math.max(...ways);
   const most = 1.05 * Math.max(1e-9, ...rows.flatMap(row => [...row.before, ...row.after]));
   const x = way => LEFT + (WIDTH - LEFT - RIGHT) * (high > low ? (way - low) / (high - low) : 0.5);
-  const y = light => HEIGHT - BOTTOM - (HEIGHT - TOP - BOTTOM) * light / most;
+  const y = light => HEIGHT - BOTTOM - (HEIGHT - TOP - BOTTOM) * Math.max(light, 0) / most;
   const line = (key, k) => draw("polyline", {
     class: key, stroke: COLORS[k],
     points: rows.map(row => `${x(row.way_m).toFixed(1)},${y(row[key][k]).toFixed(1)}`).join(" ") });
