@@ -113,6 +113,10 @@ void declare_photographs(OptionList& visible, Arguments& a) {
       .add("scattering", &a.scattering,
            "with --water: scattering at 550 nm [1/m] (default: usual for the type)")
       .range(0, 20)
+      .add_with_default("exposure-stops", &a.exposure_stops,
+                        "with --water: exposures of the photographs differ at random by up to this "
+                        "number of stops from the right one")
+      .range(0, 4)
       .add_with_default("response", &a.response,
                         "with --water: how the camera maps light to values: linear, srgb or camera "
                         "(srgb with more contrast)")
@@ -144,7 +148,7 @@ ProgramOptions describe(Arguments& a) {
 
 void check(const Arguments& a, const ParsedOptions& parsed) {
   if (a.truth_only && !a.truth) fail("--truth-only contradicts --truth 0");
-  for (const char* of_water : {"light", "depth", "scattering", "response"})
+  for (const char* of_water : {"light", "depth", "scattering", "exposure-stops", "response"})
     if (given(parsed, of_water) && a.water.empty()) fail("--{} needs --water", of_water);
   const bool plain = a.water.find(',') != std::string::npos;
   for (const char* of_spectrum : {"light", "depth", "scattering"})

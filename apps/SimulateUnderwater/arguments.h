@@ -18,6 +18,7 @@ struct Arguments {
   int samples = 3, jpeg_quality = 93;
   int sparse_points = 400;  // for each view
   double haze = 0, noise = 1.2;
+  double exposure_stops = 0;
   std::string water, light = "sun", response = "srgb";  // water: empty for light without water
   double depth = 6;                                     // of the world's z = 0 [m]
   double scattering = -1;                               // [1/m]; below 0: usual for the water

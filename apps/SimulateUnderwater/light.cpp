@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
+#include <random>
 
 #include "base/error.h"
 #include "base/parse_number.h"
@@ -133,6 +135,12 @@ double exposure_of(const simulate::Preset& preset, const simulate::LitScene& sce
   return simulate::exposure(radiances, balance);
 }
 
+// A factor within `stops` powers of two.
+float exposure_within(double stops, std::mt19937& random) {
+  constexpr double kRange = 4294967296.0;  // of the numbers of std::mt19937
+  return static_cast<float>(std::exp2(stops * (2 * (static_cast<double>(random()) / kRange) - 1)));
+}
+
 }  // namespace
 
 simulate::AnyWater water_of(const Arguments& a, const CommonOptions& common) {
@@ -167,6 +175,11 @@ void photograph_with_light(const Arguments& a, const simulate::Preset& preset,
   json file = std::visit([](const auto& kind) { return describe(kind); }, water);
   file["gains"] = {gains[2], gains[1], gains[0]};
   file["response"] = a.response;
+  std::mt19937 random(noise_seed);
+  std::vector<float> exposures;
+  for (std::size_t i = 0; i < preset.views.size(); ++i)
+    exposures.push_back(exposure_within(a.exposure_stops, random));
+  if (a.exposure_stops > 0) file["exposures"] = exposures;
   io::write_json(folder / "light.json", file);
   const ProgressSink progress = console_progress("Images (water)");
   for (std::size_t i = 0; i < preset.views.size(); ++i) {
@@ -175,13 +188,15 @@ void photograph_with_light(const Arguments& a, const simulate::Preset& preset,
     const std::string name = view_name(preset, i);
     simulate::LitImage image =
         simulate::render_underwater(scene, water, preset.lens, port, view, a.samples);
-    const cv::Mat3f values = simulate::photograph_of(image.radiance, gains, response);
+    const cv::Mat3f values =
+        simulate::photograph_of(image.radiance, exposures[i] * gains, response);
     io::write_jpeg(folder / (name + ".jpg"),
                    simulate::develop(values, a.noise, simulate::noise_key(noise_seed, i, true)),
                    a.jpeg_quality);
     if (a.truth) {
       cv::cvtColor(image.albedo, image.albedo, cv::COLOR_BGR2RGB);
       io::write_float_tiff(folder / (name + ".albedo.tiff"), image.albedo);
+      if (!image.lit.empty()) io::write_float_tiff(folder / (name + ".lit.tiff"), image.lit);
     }
     progress(i + 1, preset.views.size());
   }

@@ -57,8 +57,8 @@ LightOfView::LightOfView(const Light& light, const Water& water, const RayScene&
                       lamp.half_angle, lamp.power});
 }
 
-Spectrum LightOfView::irradiance(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                                 const Eigen::Vector3d& face_normal) const {
+Irradiance LightOfView::irradiance(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                   const Eigen::Vector3d& face_normal) const {
   const Eigen::Vector3d lifted = point + kLift * face_normal;
   if (!lamps_.empty()) return of_lamps(point, normal, lifted);
   const bool lit =
@@ -66,29 +66,33 @@ Spectrum LightOfView::irradiance(const Eigen::Vector3d& point, const Eigen::Vect
   return of_sun(point, normal, lit);
 }
 
-Spectrum LightOfView::of_sun(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                             bool lit) const {
+Irradiance LightOfView::of_sun(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                               bool lit) const {
   const double straight =
-      lit ? std::max(0.0, normal.dot(sun_.direction)) / sun_.direction.z() : 0.0;
-  const double share = sun_.direct * straight + (1 - sun_.direct) * 0.5 * (1 + normal.z());
+      sun_.direct * std::max(0.0, normal.dot(sun_.direction)) / sun_.direction.z();
+  const double even = (1 - sun_.direct) * 0.5 * (1 + normal.z());
+  const double share = even + (lit ? straight : 0.0);
   const auto depth = static_cast<float>(sun_.depth - point.z());
-  return static_cast<float>(share) * source_ * (-water_.daylight_loss * depth).exp();
+  return {static_cast<float>(share) * source_ * (-water_.daylight_loss * depth).exp(),
+          lit ? 1.0f : static_cast<float>(even / std::max(even + straight, 1e-9))};
 }
 
-Spectrum LightOfView::of_lamps(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                               const Eigen::Vector3d& lifted) const {
-  Spectrum sum = Spectrum::Zero();
+Irradiance LightOfView::of_lamps(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                 const Eigen::Vector3d& lifted) const {
+  Spectrum sum = Spectrum::Zero(), shadowed = Spectrum::Zero();
   for (const LampInWorld& lamp : lamps_) {
     const Eigen::Vector3d way = lamp.place - point;
     const double distance = way.norm();
     const Eigen::Vector3d to_lamp = way / distance;
     const double facing = normal.dot(to_lamp);
-    if (facing <= 0 || scene_.blocked(lifted, to_lamp, 0, distance - kLift)) continue;
+    if (facing <= 0) continue;
     const double strength = lamp.power * cone(-to_lamp.dot(lamp.direction), lamp.half_angle);
-    sum += static_cast<float>(strength * facing / (distance * distance)) *
-           (-water_.loss() * static_cast<float>(distance)).exp();
+    const bool blocked = scene_.blocked(lifted, to_lamp, 0, distance - kLift);
+    (blocked ? shadowed : sum) += static_cast<float>(strength * facing / (distance * distance)) *
+                                  (-water_.loss() * static_cast<float>(distance)).exp();
   }
-  return source_ * sum;
+  const float all = sum.sum() + shadowed.sum();
+  return {source_ * sum, all > 0 ? sum.sum() / all : 0.0f};
 }
 
 double LightOfView::scattered_daylight(const Eigen::Vector3d& direction) const {

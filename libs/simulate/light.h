@@ -41,16 +41,22 @@ struct Light {
 // Two lamps of divers: left and right of the camera, turned inwards by 10 degrees.
 std::vector<Lamp> usual_lamps();
 
+// The light of a surface.
+struct Irradiance {
+  Spectrum light;
+  float lit = 1;  // `light` as a share of the light that it would have without shadows
+};
+
 // Light for the photographs of one view. `scene` casts shadows. `water` and `scene` must outlive
 // the object.
 class LightOfView {
  public:
   LightOfView(const Light& light, const Water& water, const RayScene& scene, const View& view);
 
-  // The irradiance of a surface with the unit normal `normal` at `point` [world, m]. `face_normal`:
+  // The light of a surface with the unit normal `normal` at `point` [world, m]. `face_normal`:
   // unit, of the face on which the point is; shadows of the face itself are avoided with it.
-  Spectrum irradiance(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                      const Eigen::Vector3d& face_normal) const;
+  Irradiance irradiance(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                        const Eigen::Vector3d& face_normal) const;
 
   // Light that is scattered once into a ray [world], from its start on over `length` [m]. In units
   // of the light from a white surface whose irradiance is 1. The way is sampled 24 times. Shadows
@@ -64,9 +70,9 @@ class LightOfView {
     double half_angle, power;
   };
 
-  Spectrum of_sun(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, bool lit) const;
-  Spectrum of_lamps(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                    const Eigen::Vector3d& lifted) const;
+  Irradiance of_sun(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, bool lit) const;
+  Irradiance of_lamps(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                      const Eigen::Vector3d& lifted) const;
   // The share of daylight that is scattered towards -direction.
   double scattered_daylight(const Eigen::Vector3d& direction) const;
   // The light of the lamps that is scattered at `point` towards -direction.

@@ -24,6 +24,7 @@ struct PixelLight {
   Eigen::Vector3f albedo = Eigen::Vector3f::Zero();
   double distance = 0;
   float missed = 0;  // the share of rays that hit nothing
+  float lit = 0;     // Irradiance::lit
 };
 
 // A camera in the scene.
@@ -54,6 +55,7 @@ struct Camera {
       *color *= weight;
     light.distance *= weight;
     light.missed *= weight;
+    light.lit *= weight;
     return light;
   }
 
@@ -69,7 +71,7 @@ struct Camera {
 };
 
 LitImage render(const Camera& camera, const PlainWater& water) {
-  LitImage image{camera.black(), camera.black()};
+  LitImage image{camera.black(), camera.black(), {}};
   camera.for_each_pixel([&](int x, int y) {
     const PixelLight light =
         camera.mean_of_rays(x, y, [&](PixelLight& into, const SurfacePoint& point) {
@@ -89,7 +91,9 @@ void add_surface(PixelLight& into, const SurfacePoint& point, const LitScene& sc
                  const Water& water, const LightOfView& light) {
   const Spectrum reflectance = reflectance_of(scene.albedo(point));
   const Eigen::Vector3d normal = smooth_normal(scene.mesh, scene.normals, point.hit);
-  const Spectrum leaving = reflectance * light.irradiance(point.position, normal, point.hit.normal);
+  const Irradiance irradiance = light.irradiance(point.position, normal, point.hit.normal);
+  const Spectrum leaving = reflectance * irradiance.light;
+  into.lit += irradiance.lit;
   const auto way = static_cast<float>(point.hit.distance);
   const Spectrum straight = (-water.beam() * way).exp();
   into.albedo += color_of(reflectance);
@@ -99,7 +103,8 @@ void add_surface(PixelLight& into, const SurfacePoint& point, const LitScene& sc
 
 LitImage render(const Camera& camera, const SpectralWater& lit) {
   const LightOfView light(lit.light, lit.water, camera.scene.scene, camera.view);
-  LitImage image{camera.black(), camera.black()};
+  LitImage image{camera.black(), camera.black(),
+                 cv::Mat1f(camera.lens.height, camera.lens.width, 0.0f)};
   cv::Mat3f blurred = camera.black();
   camera.for_each_pixel([&](int x, int y) {
     const auto in_camera = trace_pixel(camera.lens, &camera.port, x, y);
@@ -111,6 +116,7 @@ LitImage render(const Camera& camera, const SpectralWater& lit) {
     const SceneRay ray = to_world(camera.view, *in_camera);
     const Spectrum veil = light.veil(ray.start, ray.direction, pixel.distance);
     image.albedo(y, x) = bgr(pixel.albedo);
+    image.lit(y, x) = pixel.lit;
     image.radiance(y, x) = bgr(pixel.straight + color_of(veil));
     blurred(y, x) = bgr(pixel.blurred);
   });

@@ -32,9 +32,11 @@ struct LitScene {
 
 // A photograph of radiances, and the surface's colours in white light, each with the channel order
 // B G R, linear. In units in which a white surface in the light of the water's surface is 1, before
-// exposure. Albedo is 0 where a ray hits nothing.
+// exposure. Albedo is 0 where a ray hits nothing. `lit`: the light of the surface as a share of
+// that without shadows, 0 where a ray hits nothing; empty for plain water.
 struct LitImage {
   cv::Mat3f radiance, albedo;
+  cv::Mat1f lit;
 };
 
 // Renders the photograph of `view` through `port` (camera frame). Rays that hit nothing end after

@@ -76,7 +76,9 @@ TEST_F(SimulateUnderwater, PhotographsOfTwoCameras) {
 TEST_F(SimulateUnderwater, PhotographsWithTheLightOfWater) {
   write_atomically(folder_ / "lamps.json",
                    R"({"lamps": [{"place": [0.2, 0, 0], "direction": [0, 0, 1]}]})");
-  const Outcome outcome = run(kSmall + "--medium water --water 3C --light lamp:lamps.json -o a");
+  const Outcome outcome = run(kSmall +
+                              "--medium water --water 3C --light lamp:lamps.json "
+                              "--exposure-stops 1 -o a");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_TRUE(fs::exists(folder_ / "a/water/0002.jpg"));
   EXPECT_TRUE(fs::exists(folder_ / "a/water/0002.albedo.tiff"));
@@ -84,10 +86,22 @@ TEST_F(SimulateUnderwater, PhotographsWithTheLightOfWater) {
   EXPECT_EQ(light.at("type"), "3C");
   EXPECT_EQ(light.at("lamps").at(0).at("place").at(0), 0.2);
   EXPECT_EQ(light.at("absorption_per_m").size(), 16u);
+  EXPECT_EQ(light.at("exposures").size(), 3u);
+  for (const double exposure : light.at("exposures")) EXPECT_NEAR(exposure, 1.25, 0.75);
+  // A lamp beside the camera casts shadows, and most of the surface is lit.
+  double least = 0, most = 0;
+  const cv::Mat lit =
+      cv::imread((folder_ / "a/water/0002.lit.tiff").string(), cv::IMREAD_UNCHANGED);
+  cv::minMaxLoc(lit, &least, &most);
+  EXPECT_GE(least, 0);
+  EXPECT_LT(least, 0.9);
+  EXPECT_EQ(most, 1);
+  EXPECT_GT(cv::mean(lit)[0], 0.7);
   refuses("water is '3X'", kSmall + "--water 3X -o b");
   refuses("must be a type of water, or nine numbers", kSmall + "--water 1,2 -o b");
   refuses("'30' is not a number from 0 to 20", kSmall + "--water 30,1,1,1,1,1,0,0,0 -o b");
   refuses("--light is 'moon'", kSmall + "--water 3C --light moon -o b");
+  refuses("--exposure-stops needs --water", kSmall + "--exposure-stops 1 -o b");
   refuses("--depth needs --water", kSmall + "--depth 3 -o b");
   refuses("--depth 0.1: must be above", kSmall + "--water 3C --depth 0.1 -o b");
   refuses("--light contradicts --water with nine numbers",
