@@ -31,7 +31,7 @@ Mesh read_mesh(const Settings& settings, const LocalFrame& frame, const Context&
 }
 
 // The memory to fit both models, for each observation.
-constexpr std::uint64_t kBytesToFit = 700;
+constexpr std::uint64_t kBytesToFit = 1000;
 
 // Warns of a mesh that is inside out, and of a scene without a port.
 void check_scene(const Settings& settings, const survey::Survey& survey, const Mesh& mesh,
@@ -56,9 +56,59 @@ color::Choice fit(const Settings& settings, const color::Observations& observati
   return choice;
 }
 
+// The upward direction in the frame of the scene, unit; zero: not known.
+Eigen::Vector3d up_of(const Settings& settings, const survey::Survey& survey) {
+  if (settings.up) return settings.up->normalized();
+  if (survey.frame.is_world()) return Eigen::Vector3d::Zero();
+  return Eigen::Vector3d::UnitZ();
+}
+
+// Takes the type of water for channels that are not determined, and removes the loss of daylight by
+// depth.
+void use_daylight(const Settings& settings, const color::Observations& observations,
+                  bool has_heights, Findings& findings, const Context& context) {
+  auto* const water = std::get_if<color::SunWater>(&findings.choice.model);
+  if (!water) {
+    if (settings.assumed) context.warning("--assume: is only for daylight; it is not used");
+    if (settings.up) context.info("--up: is only for daylight; it is not used");
+    return;
+  }
+  findings.daylight = color::daylight_of(*water, settings.assumed);
+  if (!findings.daylight) return;
+  if (settings.assumed) color::assume(*findings.daylight, *water);
+  if (has_heights)
+    color::remove_daylight_loss(*findings.daylight, observations, *water);
+  else
+    context.info(
+        "heights are not known: daylight's loss by depth is not removed. --up gives the direction "
+        "of the heights");
+}
+
+// Fits the model, and with Settings::each_exposure the exposures, by which it divides the
+// observations.
+color::Exposures fit_exposures(const Settings& settings, std::size_t views,
+                               color::Observations& observations, color::Choice& choice) {
+  constexpr int kMost = 8;
+  constexpr double kEnough = 0.002;
+  color::Exposures exposures(views, Eigen::Array3f::Ones());
+  Settings fixed = settings;
+  color::Exposures step = color::even_exposures(observations, views);
+  for (int i = 0; i < kMost; ++i) {
+    observations = color::divided_by(step, std::move(observations));
+    for (std::size_t view = 0; view < views; ++view) exposures[view] *= step[view];
+    choice = fit(fixed, observations);
+    fixed.light = choice.light;
+    step = color::exposures_by(choice.model, observations, views);
+    if (color::difference_of(step) < kEnough) break;
+  }
+  return exposures;
+}
+
 Findings find(const Settings& settings, const survey::Survey& survey,
               const color::SeenSurface& surface, const Context& context) {
-  const color::Observations observations = surface.observe(
+  context.memory().require(color::bytes_to_observe(settings.observe) + bytes_to_restore(survey),
+                           "looking at photographs");
+  color::Observations observations = surface.observe(
       survey::posed_cameras(survey),
       [&](std::size_t view) {
         PhotographLight photograph = read_light(survey, view, settings.transfer);
@@ -67,22 +117,32 @@ Findings find(const Settings& settings, const survey::Survey& survey,
       },
       settings.observe, context);
   if (observations.points() < 100)
-    fail_in(settings.mesh, "only {} points of the mesh are in two photographs or more: must be 100",
+    fail_in(settings.mesh,
+            "only {} even pieces of the mesh are in two photographs or more: must be 100",
             observations.points());
   context.memory().require(observations.all.size() * kBytesToFit, "comparing colours");
   Findings findings;
-  findings.choice = fit(settings, observations);
+  const std::size_t views = survey.views.size();
+  findings.raw_spread = color::spread_of(observations, nullptr);
+  if (settings.each_exposure)
+    findings.exposures = fit_exposures(settings, views, observations, findings.choice);
+  else
+    findings.choice = fit(settings, observations);
+  findings.exposures_left =
+      color::difference_of(color::exposures_by(findings.choice.model, observations, views));
+  use_daylight(settings, observations, !up_of(settings, survey).isZero(), findings, context);
   findings.light_given = settings.light.has_value();
   findings.points = observations.points();
   findings.observations = observations.all.size();
-  findings.raw_spread = color::spread_of(observations, nullptr);
   findings.spread = color::spread_of(observations, &findings.choice.model);
   if (std::ranges::none_of(color::determined(findings.choice.model), std::identity()))
     fail_in(
         settings.mesh,
         "the photographs determine the loss of no channel: they show the same points from equal "
-        "distances, or too few points of the mesh");
+        "distances, or too few points of the mesh, or hardly any light of the seabed");
   findings.gain = color::grey_world(observations, findings.choice.model);
+  findings.unevenness = color::unevenness_by_place(observations, findings.choice.model);
+  findings.brightness = color::brightness_by_way(observations, findings.choice.model);
   return findings;
 }
 
@@ -105,16 +165,15 @@ int run(int argc, char** argv) {
   context.memory().require(color::bytes_to_see(mesh) + bytes_to_restore(survey),
                            "restoring photographs");
   check_scene(settings, survey, mesh, context);
-  const color::SeenSurface surface(mesh);
+  const color::SeenSurface surface(mesh, up_of(settings, survey));
   Findings findings = find(settings, survey, surface, context);
   if (settings.grey) {
-    findings.gain = grey_gain(settings, survey, surface, findings.choice.model, findings.gain);
+    findings.gain = grey_gain(settings, survey, surface, findings);
     findings.grey_given = true;
   }
   log_findings(findings, context);
   write_folder(settings.output, [&](const std::filesystem::path& staging) {
-    findings.known = write_restored(settings, survey, surface, findings.choice.model, findings.gain,
-                                    names, staging, context);
+    findings.known = write_restored(settings, survey, surface, findings, names, staging, context);
     write_findings(staging, findings);
   });
   log_info("{} photographs without water in {}", survey.views.size(), settings.output.string());

@@ -12,6 +12,7 @@
 #include "io/images/bit_depth.h"
 #include "io/openmvs/scene_files.h"
 #include "io/openmvs/scene_options.h"
+#include "map/up_direction.h"
 #include "survey/photograph_options.h"
 
 namespace axial::apps {
@@ -19,7 +20,7 @@ namespace {
 
 // The values of the command line before they are checked and converted.
 struct Raw {
-  std::string input, light = "auto", curve = "srgb", grey;
+  std::string input, light = "auto", curve = "srgb", grey, up, assumed, exposure = "one";
   io::SceneOptions scene;
 };
 
@@ -54,9 +55,21 @@ void declare(OptionList& list, Raw& raw, Settings& settings) {
       .one_of({"auto", "sun", "lamp"})
       .add_with_default("curve", &raw.curve,
                         "how the photographs' values stand for light: srgb, linear or gamma:G")
+      .add_with_default(
+          "exposure", &raw.exposure,
+          "one: all photographs have the same exposure and white balance; each: every "
+          "photograph has its own, which is estimated")
+      .one_of({"one", "each"})
       .add("grey", &raw.grey,
            "a part of a photograph that is grey in white light: IMAGE:X,Y,WIDTH,HEIGHT [px] "
            "(default: the seabed is grey in the mean)")
+      .add("assume", &raw.assumed,
+           "type of water, for channels that the photographs do not determine in daylight")
+      .one_of({"jerlov-I", "jerlov-IA", "jerlov-IB", "jerlov-II", "jerlov-III", "jerlov-1C",
+               "jerlov-3C", "jerlov-5C", "jerlov-7C", "jerlov-9C"})
+      .add("up", &raw.up,
+           "direction of the heights in the world, X,Y,Z: daylight's loss by depth is removed, too "
+           "(default: z if the scene has an offset, otherwise heights are not known)")
       .add_with_default("points", &settings.observe.points,
                         "points of the surface whose colours are compared between photographs")
       .range(100, 10000000)
@@ -78,6 +91,9 @@ void convert(const Raw& raw, Options& options) {
   if (raw.light == "sun") settings.light = color::Light::sun;
   if (raw.light == "lamp") settings.light = color::Light::lamp;
   settings.transfer = color::Transfer::parse(raw.curve);
+  settings.each_exposure = raw.exposure == "each";
+  settings.up = map::parse_up(raw.up, 0);
+  if (!raw.assumed.empty()) settings.assumed = color::parse_water_type(raw.assumed);
   if (!raw.grey.empty()) settings.grey = grey_of(raw.grey);
   survey::take_masks(options.parsed, settings.survey);
 }

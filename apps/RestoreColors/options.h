@@ -7,6 +7,7 @@
 
 #include "axial/survey.h"
 #include "base/program.h"
+#include "color/daylight.h"
 #include "color/observations.h"
 #include "color/restore.h"
 
@@ -23,8 +24,11 @@ struct Settings {
   std::filesystem::path mesh, output;
   std::optional<color::Light> light;  // empty: by the photographs
   color::Transfer transfer;
+  bool each_exposure = false;  // each photograph has an exposure and white balance of its own
   std::optional<GreyPatch> grey;
   color::ObserveOptions observe;
+  std::optional<color::WaterType> assumed;  // the type of water, if it is known
+  std::optional<Eigen::Vector3d> up;        // of heights; empty: not given
   int jpeg_quality = 95;
   bool masks = false;  // write masks of pixels that are not determined
 };

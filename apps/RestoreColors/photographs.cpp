@@ -9,6 +9,7 @@
 #include "base/file_extension.h"
 #include "base/same_file.h"
 #include "io/images/image.h"
+#include "survey/colors.h"
 #include "survey/photographs.h"
 
 namespace axial::apps {
@@ -29,10 +30,16 @@ fs::path common_folder(const survey::Survey& survey) {
   return common;
 }
 
-color::Rendering rendering_of(const Settings& settings, const survey::View& view,
-                              const Eigen::Array3f& gain) {
-  const bool jpeg = is_jpeg_name(view.file);
-  return {gain, settings.transfer, jpeg ? 8 : view.header.bits};
+Eigen::Array3f exposure_of(const Findings& findings, std::size_t view) {
+  if (findings.exposures.empty()) return Eigen::Array3f::Ones();
+  return findings.exposures[view];
+}
+
+color::Rendering rendering_of(const Settings& settings, const survey::Survey& survey,
+                              std::size_t view, const Findings& findings) {
+  const survey::View& of = survey.views[view];
+  return {findings.gain, settings.transfer, is_jpeg_name(of.file) ? 8 : of.header.bits,
+          exposure_of(findings, view)};
 }
 
 geometry::PosedCamera posed(const survey::View& view) {
@@ -53,8 +60,7 @@ OutputNames output_names(const Settings& settings, const survey::Survey& survey)
   const fs::path folder = common_folder(survey);
   OutputNames names;
   for (const survey::View& view : survey.views) {
-    fs::path name = view.file.lexically_relative(folder);
-    if (!is_jpeg_name(name) && lower_extension(name) != ".png") name.replace_extension(".png");
+    fs::path name = survey::restored_name(view.file.lexically_relative(folder));
     if (settings.masks) names.masks.push_back(fs::path("masks") / (name.string() + ".png"));
     names.photographs.push_back(std::move(name));
   }
@@ -73,17 +79,16 @@ void check_outputs(const Settings& settings, const survey::Survey& survey,
 }
 
 double write_restored(const Settings& settings, const survey::Survey& survey,
-                      const color::SeenSurface& surface, const color::WaterModel& model,
-                      const Eigen::Array3f& gain, const OutputNames& names, const fs::path& folder,
-                      const Context& context) {
+                      const color::SeenSurface& surface, const Findings& findings,
+                      const OutputNames& names, const fs::path& folder, const Context& context) {
   ProgressCounter progress(context.stage("Restoring photographs"), survey.views.size());
   double known = 0, all = 0;
   for (std::size_t i = 0; i < survey.views.size(); ++i) {
     const survey::View& view = survey.views[i];
     const PhotographLight photograph = read_light(survey, i, settings.transfer);
     const color::Restored restored =
-        color::restore(photograph.light, photograph.mask, surface.sights(posed(view)), view.camera,
-                       model, rendering_of(settings, view, gain));
+        color::restore(photograph.light, photograph.mask, surface.sights(posed(view)),
+                       findings.choice.model, rendering_of(settings, survey, i, findings));
     const fs::path file = folder / names.photographs[i];
     make_folder(file.parent_path());
     if (is_jpeg_name(file))
@@ -120,7 +125,7 @@ std::size_t view_of_grey(const GreyPatch& grey, const survey::Survey& survey) {
 
 std::uint64_t bytes_to_restore(const survey::Survey& survey) {
   // Light, sights, their copies while gaps are filled, and the result in 16 and 8 bits.
-  constexpr std::uint64_t kEachPixel = 12 + 16 + 6 + 4 + 6 + 3 + 1;
+  constexpr std::uint64_t kEachPixel = 12 + 2 * sizeof(color::Sight) + 14 + 6 + 3 + 1;
   std::uint64_t most = 0;
   for (const survey::View& view : survey.views)
     most = std::max(most, view.pixels() * (kEachPixel + view.header.decode_bytes));
@@ -128,8 +133,7 @@ std::uint64_t bytes_to_restore(const survey::Survey& survey) {
 }
 
 Eigen::Array3f grey_gain(const Settings& settings, const survey::Survey& survey,
-                         const color::SeenSurface& surface, const color::WaterModel& model,
-                         const Eigen::Array3f& world) {
+                         const color::SeenSurface& surface, const Findings& findings) {
   const GreyPatch& grey = *settings.grey;
   const std::size_t index = view_of_grey(grey, survey);
   const survey::View& view = survey.views[index];
@@ -141,19 +145,17 @@ Eigen::Array3f grey_gain(const Settings& settings, const survey::Survey& survey,
   int count = 0;
   for (int y = grey.part.y; y < grey.part.br().y; ++y)
     for (int x = grey.part.x; x < grey.part.br().x; ++x) {
-      const cv::Vec3f &l = light(y, x), &n = sights.normal(y, x);
-      const Eigen::Array3f color(l[0], l[1], l[2]);
-      if (!color.isFinite().all() || !(sights.way(y, x) > 0)) continue;
-      sum += color::surface_light(
-          model, {color::place_of({x, y}, view.camera), sights.way(y, x), {n[0], n[1], n[2]}},
-          color);
+      const cv::Vec3f& l = light(y, x);
+      const Eigen::Array3f color = Eigen::Array3f(l[0], l[1], l[2]) / exposure_of(findings, index);
+      if (!color.isFinite().all() || !(sights.at(x, y).way > 0)) continue;
+      sum += color::surface_light(findings.choice.model, sights.at(x, y), color);
       ++count;
     }
   if (count == 0 || !(sum > 0).all())
     fail("--grey {}: the light of this part is not known: it is clipped, or no surface is there",
          grey.image);
   const Eigen::Array3f gain = count / sum;
-  return gain * (world.mean() / gain.mean());
+  return gain * (findings.gain.mean() / gain.mean());
 }
 
 }  // namespace axial::apps

@@ -10,6 +10,7 @@
 #include "color/observations.h"
 #include "color/restore.h"
 #include "options.h"
+#include "report.h"
 #include "survey/survey.h"
 
 namespace axial::apps {
@@ -38,19 +39,18 @@ void check_outputs(const Settings& settings, const survey::Survey& survey,
 // Restores and writes all photographs, and with Settings::masks the masks, into `folder`. Returns
 // the share of pixels whose colour is determined.
 double write_restored(const Settings& settings, const survey::Survey& survey,
-                      const color::SeenSurface& surface, const color::WaterModel& model,
-                      const Eigen::Array3f& gain, const OutputNames& names,
-                      const std::filesystem::path& folder, const Context& context);
+                      const color::SeenSurface& surface, const Findings& findings,
+                      const OutputNames& names, const std::filesystem::path& folder,
+                      const Context& context);
 
 // The view whose photograph has Settings::grey. Error if not exactly one photograph's path ends
 // with the name, and if the part lies outside the photograph.
 std::size_t view_of_grey(const GreyPatch& grey, const survey::Survey& survey);
 
-// The gains by which Settings::grey is grey, as bright as by `world`. Errors as for view_of_grey(),
-// and if its light is not known.
+// The gains by which Settings::grey is grey, as bright as by Findings::gain. Errors as for
+// view_of_grey(), and if its light is not known.
 Eigen::Array3f grey_gain(const Settings& settings, const survey::Survey& survey,
-                         const color::SeenSurface& surface, const color::WaterModel& model,
-                         const Eigen::Array3f& world);
+                         const color::SeenSurface& surface, const Findings& findings);
 
 // The memory [bytes] of write_restored() besides the surface, for the largest photograph.
 std::uint64_t bytes_to_restore(const survey::Survey& survey);

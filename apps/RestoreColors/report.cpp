@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report.h"
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 
@@ -19,15 +20,27 @@ json describe(const color::Estimate& estimate) {
 }
 
 json describe(const color::SunChannel& channel) {
-  return {{"a_per_m", describe(channel.a)},
-          {"b_per_m", describe(channel.b)},
-          {"veil", describe(channel.veil)},
-          {"determined", channel.determined},
-          {"residual_in_sigmas", channel.residual}};
+  const Eigen::Vector3d& q = channel.veil_by_direction;
+  json described = {{"a_per_m", describe(channel.a)},
+                    {"b_per_m", describe(channel.b)},
+                    {"veil", describe(channel.veil)},
+                    {"veil_by_direction", {q[0], q[1], q[2]}},
+                    {"direct", channel.direct},
+                    {"determined", channel.determined},
+                    {"residual_in_sigmas", channel.residual}};
+  if (channel.assumed) described["assumed"] = true;
+  if (channel.daylight.value > 0) described["daylight_per_m"] = describe(channel.daylight);
+  return described;
+}
+
+json describe(const color::BrightnessAt& layer) {
+  const auto list = [](const Eigen::Array3f& color) { return json{color[0], color[1], color[2]}; };
+  return {{"way_m", layer.way}, {"before", list(layer.before)}, {"after", list(layer.after)}};
 }
 
 json describe(const color::LampChannel& channel) {
   return {{"loss_per_m", channel.loss},
+          {"direct", channel.direct},
           {"determined", channel.determined},
           {"residual_in_sigmas", channel.residual}};
 }
@@ -39,9 +52,9 @@ const char* name_of(color::Light light) {
 void log_channels(const color::SunWater& water) {
   for (std::size_t k = 0; k < 3; ++k) {
     const color::SunChannel& channel = water.channels[k];
-    log_info("{}: loss a {:.3f} +- {:.3f} /m, veil B {:.3f} +- {:.3f}, b {:.3f} +- {:.3f} /m",
-             kNames[k], channel.a.value, channel.a.sigma, channel.veil.value, channel.veil.sigma,
-             channel.b.value, channel.b.sigma);
+    log_info("{}: loss a {:.3f} +- {:.3f} /m{}, veil B {:.3f} +- {:.3f}, b {:.3f} +- {:.3f} /m",
+             kNames[k], channel.a.value, channel.a.sigma, channel.assumed ? " (assumed)" : "",
+             channel.veil.value, channel.veil.sigma, channel.b.value, channel.b.sigma);
   }
 }
 
@@ -50,14 +63,62 @@ void log_channels(const color::LampField& field) {
     log_info("{}: loss {:.3f} /m, one way", kNames[k], field.channels[k].loss);
 }
 
+void log_daylight(const color::Daylight& daylight) {
+  const auto& losses = daylight.losses;
+  log_info(
+      "Water like {}: by depth, daylight loses {:.3f} +- {:.3f}, {:.3f} +- {:.3f} and "
+      "{:.3f} +- {:.3f} /m (R G B)",
+      color::name_of(daylight.type.value), losses[0].value, losses[0].sigma, losses[1].value,
+      losses[1].sigma, losses[2].value, losses[2].sigma);
+}
+
+bool falls_with_way(const color::LampField& field) {
+  return std::ranges::any_of(field.channels, [](const color::LampChannel& channel) {
+    return channel.determined && channel.loss > color::kLeastLoss;
+  });
+}
+
+// Warns if the same points have different colours in the restored photographs.
+void check_agreement(const Findings& findings, const Context& context) {
+  constexpr double kMostUneven = 0.04, kMostSpread = 0.4, kMostExposure = 0.05;
+  if (findings.exposures.empty() && findings.exposures_left > kMostExposure)
+    context.warning(
+        "the photographs differ in exposure by {:.0f} %, but are restored with one exposure: try "
+        "--exposure each",
+        100 * findings.exposures_left);
+  if (findings.unevenness > kMostUneven)
+    context.warning(
+        "the restored light depends on the place in the image by {:.0f} %: {}",
+        100 * findings.unevenness,
+        findings.choice.light == color::Light::sun
+            ? "is it the light of lamps (--light lamp), or do the photographs differ in exposure?"
+            : "do the photographs differ in exposure, or do lamps move against the camera?");
+  if (const auto* field = std::get_if<color::LampField>(&findings.choice.model);
+      field && !falls_with_way(*field))
+    context.warning(
+        "light does not fall with the distance as that of lamps does: the water scatters most of "
+        "it, or it is daylight (--light sun). The restored colours are uncertain");
+  if (findings.spread > kMostSpread)
+    context.warning(
+        "the restored light of a point differs between photographs by {:.0f} % of the differences "
+        "between points: are the port, the poses and the mesh right, and have the photographs one "
+        "exposure?",
+        100 * findings.spread);
+}
+
 }  // namespace
 
 void log_findings(const Findings& findings, const Context& context) {
   log_info("Light: {}{}", name_of(findings.choice.light),
            findings.light_given ? " (given)" : ", by the photographs");
+  if (!findings.exposures.empty())
+    log_info("Exposures differ by {:.1f} % between photographs",
+             100 * color::difference_of(findings.exposures));
   std::visit([](const auto& water) { log_channels(water); }, findings.choice.model);
+  if (findings.daylight) log_daylight(*findings.daylight);
   log_info("The light of a point differs between photographs by {:.1f} %; before, by {:.1f} %",
            100 * findings.spread, 100 * findings.raw_spread);
+  check_agreement(findings, context);
   const std::array<bool, 3> known = color::determined(findings.choice.model);
   for (std::size_t k = 0; k < 3; ++k)
     if (!known[k])
@@ -77,12 +138,17 @@ void write_findings(const std::filesystem::path& folder, const Findings& finding
                {"observations", findings.observations},
                {"spread_before", findings.raw_spread},
                {"spread_after", findings.spread},
+               {"unevenness_by_place", findings.unevenness},
                {"determined_pixels", findings.known},
+               {"exposure", findings.exposures.empty() ? "one" : "each"},
                {"white", findings.grey_given ? "grey patch" : "grey seabed"},
                {"gain", {findings.gain[0], findings.gain[1], findings.gain[2]}}};
   if (!findings.light_given)
     file["spread_of_models"] = {{"sun", findings.choice.sun_spread},
                                 {"lamp", findings.choice.lamp_spread}};
+  if (findings.daylight) file["water_type"] = color::name_of(findings.daylight->type.value);
+  for (const color::BrightnessAt& layer : findings.brightness)
+    file["brightness_by_way"].push_back(describe(layer));
   std::visit(
       [&](const auto& water) {
         for (std::size_t k = 0; k < 3; ++k)

@@ -4,6 +4,9 @@
 
 #include <filesystem>
 
+#include "color/brightness.h"
+#include "color/daylight.h"
+#include "color/exposure.h"
 #include "color/restore.h"
 #include "options.h"
 
@@ -14,9 +17,15 @@ struct Findings {
   bool light_given = false;
   std::size_t points = 0, observations = 0;
   double raw_spread = 0, spread = 0;  // of a point's light between photographs
+  double unevenness = 0;              // by the place in the image, after restoring
   double known = 0;                   // share of pixels whose colour is determined
+  // Of the views; empty: one for all. `exposures_left`: by how much they differ from those.
+  color::Exposures exposures;
+  double exposures_left = 0;
   Eigen::Array3f gain = Eigen::Array3f::Ones();
   bool grey_given = false;
+  std::optional<color::Daylight> daylight;  // in daylight
+  std::vector<color::BrightnessAt> brightness;
 };
 
 // Logs the findings, and warns of channels that are not determined.

@@ -44,6 +44,25 @@ Channel channel_of(const Observations& observations, int k, const Transfer& tran
   return channel;
 }
 
+Channel part_of(const Channel& channel, std::size_t points) {
+  const std::size_t step = std::max<std::size_t>(1, channel.points() / points);
+  Channel part;
+  part.first.push_back(0);
+  for (std::size_t point = 0; point < channel.points(); point += step) {
+    for (std::size_t i = channel.first[point]; i < channel.first[point + 1]; ++i) {
+      part.light.push_back(channel.light[i]);
+      part.noise.push_back(channel.noise[i]);
+      part.spread.push_back(channel.spread[i]);
+      part.sigma.push_back(channel.sigma[i]);
+      part.weight.push_back(channel.weight[i]);
+      part.sights.push_back(channel.sights[i]);
+      part.views.push_back(channel.views[i]);
+    }
+    part.first.push_back(part.light.size());
+  }
+  return part;
+}
+
 void expect(Channel& channel, std::span<const double> factors, std::span<const double> surfaces) {
   constexpr double kShare = 0.03, kSpread = 0.25, kLeastFactor = 1e-6;
   for (std::size_t point = 0; point < channel.points(); ++point) {
@@ -58,6 +77,15 @@ void expect(Channel& channel, std::span<const double> factors, std::span<const d
       channel.weight[i] = 1 / (channel.sigma[i] * channel.sigma[i]);
     }
   }
+}
+
+double direct_share(const Channel& channel, std::span<const double> factors,
+                    std::span<const double> surfaces) {
+  std::vector<double> shares;
+  for (std::size_t point = 0; point < channel.points(); ++point)
+    for (std::size_t i = channel.first[point]; i < channel.first[point + 1]; ++i)
+      shares.push_back(surfaces[point] * factors[i] / std::max(channel.light[i], 1e-4));
+  return upper_median(std::move(shares));
 }
 
 double weigh(Channel& channel, std::span<const double> residuals) {

@@ -28,11 +28,20 @@ struct Channel {
 // observation. Expected standard deviations are those for equal factors.
 Channel channel_of(const Observations& observations, int channel, const Transfer& transfer);
 
+// About `points` points, evenly from all, with their observations.
+Channel part_of(const Channel& channel, std::size_t points);
+
 // Sets `sigma` for light = J factor + veil. Poses and surface have errors, so that J differs
 // between the observations of a point: by 3 % of J, and by a quarter of the spread of J nearby.
 // This part is proportional to the factor. With other proportions the fit is biased, because J is
 // estimated, too: it is a regression with errors in both variables. `surfaces`: J of each point.
 void expect(Channel& channel, std::span<const double> factors, std::span<const double> surfaces);
+
+// The share of the light that comes from the surface: the median of J factor / light. Below
+// kLeastDirect, small errors of the veil are large errors of J.
+double direct_share(const Channel& channel, std::span<const double> factors,
+                    std::span<const double> surfaces);
+inline constexpr double kLeastDirect = 0.03;
 
 // Sets the weights by Cauchy's function of residual / sigma over a robust scale. Returns the scale:
 // 1.4826 times the median of |residual / sigma|.

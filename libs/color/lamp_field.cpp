@@ -111,7 +111,8 @@ double loss_of(const Channel& channel) {
   std::ranges::sort(slopes, {}, &Slope::value);
   double sum = 0;
   for (const Slope& slope : slopes)
-    if ((sum += slope.weight) >= 0.5 * total) return std::clamp(-0.5 * slope.value, 0.02, 3.0);
+    if ((sum += slope.weight) >= 0.5 * total)
+      return std::clamp(-0.5 * slope.value, kLeastLoss, 3.0);
   return 0.1;
 }
 
@@ -129,16 +130,20 @@ class LampFit {
 
   LampChannel run() {
     constexpr int kIterations = 12;
+    constexpr double kEnough = 2e-3;
     for (int i = 0; i < kIterations; ++i) {
       expect_errors();
       result_.residual = weigh(channel_, residuals(unknowns_));
+      const VectorXd before = unknowns_;
       step();
+      if ((unknowns_ - before).norm() < kEnough * before.norm()) break;
     }
     for (int node = 0; node < grid_.nodes(); ++node)
       result_.light.push_back(unknowns_.segment<3>(3 * node));
     for (int place = 0; place < grid_.places(); ++place)
       result_.veil.push_back(unknowns_[3 * grid_.nodes() + place]);
-    result_.determined = determines_surfaces();
+    result_.direct = share_of_surfaces();
+    result_.determined = determines_surfaces() && result_.direct >= kLeastDirect;
     return std::move(result_);
   }
 
@@ -209,13 +214,21 @@ class LampFit {
            robust_deviation(std::move(surfaces)) >= 2 * sigma;
   }
 
-  void expect_errors() {
-    std::vector<double> factors, surfaces;
+  std::vector<double> factors() const {
+    std::vector<double> factors;
     for (const Term& term : terms_) factors.push_back(factor_of(term, unknowns_));
+    return factors;
+  }
+  std::vector<double> surfaces() const {
+    std::vector<double> surfaces;
     for (std::size_t point = 0; point < channel_.points(); ++point)
       surfaces.push_back(surface_of(point, unknowns_));
-    expect(channel_, factors, surfaces);
+    return surfaces;
   }
+
+  void expect_errors() { expect(channel_, factors(), surfaces()); }
+
+  double share_of_surfaces() const { return direct_share(channel_, factors(), surfaces()); }
 
   std::vector<double> residuals(const VectorXd& at) const {
     std::vector<double> all(channel_.light.size());
@@ -236,7 +249,8 @@ class LampFit {
     return sum + smoothness(at);
   }
 
-  // Adds a point to the normal equations, without its J.
+  // Adds a point to the normal equations, without its J. Of the matrix only the lower triangle is
+  // used.
   void add_point(std::size_t point, MatrixXd& matrix, VectorXd& gradient) const {
     const double surface = surface_of(point, unknowns_);
     std::vector<int> index;
@@ -257,15 +271,15 @@ class LampFit {
       for (std::size_t k = 0; k < 28; ++k) {
         gradient[where[k]] += weight * residual * slope[k];
         for (std::size_t l = 0; l < 28; ++l)
-          matrix(where[k], where[l]) += weight * slope[k] * slope[l];
+          if (where[l] <= where[k]) matrix(where[k], where[l]) += weight * slope[k] * slope[l];
         index.push_back(where[k]);
         shared.push_back(weight * factor * slope[k]);
       }
       squares += weight * factor * factor;
     }
     merge(index, shared);
-    for (std::size_t k = 0; k < index.size(); ++k)
-      for (std::size_t l = 0; l < index.size(); ++l)
+    for (std::size_t l = 0; l < index.size(); ++l)
+      for (std::size_t k = l; k < index.size(); ++k)
         matrix(index[k], index[l]) -= shared[k] * shared[l] / squares;
   }
 
@@ -330,7 +344,8 @@ class LampFit {
       for (std::size_t k = 0; k < 3; ++k) {
         gradient[where[k]] -= kFactor[k] * difference / (scale * scale);
         for (std::size_t l = 0; l < 3; ++l)
-          matrix(where[k], where[l]) += kFactor[k] * kFactor[l] / (scale * scale);
+          if (where[l] <= where[k])
+            matrix(where[k], where[l]) += kFactor[k] * kFactor[l] / (scale * scale);
       }
     });
   }
@@ -430,10 +445,11 @@ Eigen::Array3f LampField::veil(const Sight& sight) const {
 
 LampField fit_lamps(const Observations& observations, const Transfer& transfer) {
   constexpr std::size_t kLeastPoints = 200;
+  const Observations open = without_shadows(observations);
   LampField field;
-  field.grid = grid_of(observations);
+  field.grid = grid_of(open);
   for (std::size_t k = 0; k < 3; ++k) {
-    Channel channel = channel_of(observations, static_cast<int>(k), transfer);
+    Channel channel = channel_of(open, static_cast<int>(k), transfer);
     if (channel.points() < kLeastPoints) continue;
     field.channels[k] = LampFit(std::move(channel), field.grid).run();
   }

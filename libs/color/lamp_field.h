@@ -18,7 +18,7 @@ namespace axial::color {
 
 // The nodes of the grid: by places in the image and ways.
 struct LampGrid {
-  int across = 7, down = 5, along = 4;
+  int across = 7, down = 5, along = 6;
   float half_height = 1;            // of the image, in Sight::place
   float nearest = 0, farthest = 1;  // ways of the first and last nodes [m]
 
@@ -26,11 +26,19 @@ struct LampGrid {
   int nodes() const { return places() * along; }
 };
 
+// The least LampChannel::loss [1/m].
+inline constexpr double kLeastLoss = 0.02;
+
 struct LampChannel {
+  double direct = 0;  // the share of light that comes from the surface: direct_share()
   // Whether the photographs determine J: its median standard deviation is at most 30 % of its mean
-  // and at most half of what J differs by between points. Never with fewer than 200 points.
+  // and at most half of what J differs by between points, and `direct` is at least kLeastDirect.
+  // Never with fewer than 200 points.
   bool determined = false;
-  double loss = 0;                     // rate in the factor exp(-2 loss d) / d^2 of E [1/m]
+  // Rate in the factor exp(-2 loss d) / d^2 of E [1/m]. kLeastLoss: the light of the points does
+  // not fall with the way as light of lamps does, because the veil outshines them, or because it is
+  // daylight.
+  double loss = 0;
   std::vector<Eigen::Vector3d> light;  // E without this factor, at the nodes; in the camera frame
   std::vector<double> veil;            // V at places
   std::vector<float> saturation;       // T at ways from 0 to the farthest, at equal steps
@@ -47,7 +55,8 @@ struct LampField {
   Eigen::Array3f veil(const Sight& sight) const;
 };
 
-// Fits the field, robustly. The mean of J over the points is 0.25 in each channel.
+// Fits the field to observations without shadows (Observation::open), robustly. The mean of J over
+// the points is 0.25 in each channel.
 LampField fit_lamps(const Observations& observations, const Transfer& transfer);
 
 }  // namespace axial::color

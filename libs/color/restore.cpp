@@ -41,23 +41,26 @@ Observations half_of(const Observations& all, std::size_t first) {
 // The factor below which light stays as it is: less than a thousandth of it is left.
 constexpr float kLeastFactor = 1e-3f;
 
-// Halves `way` and `normal`, and counts only pixels with a way.
+// The means of two by two pixels, of those with a way.
 SightImage halved(const SightImage& sights) {
-  const cv::Size size((sights.way.cols + 1) / 2, (sights.way.rows + 1) / 2);
-  SightImage half{cv::Mat1f(size, 0.0f), cv::Mat3f(size, cv::Vec3f(0, 0, 0))};
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x) {
-      int count = 0;
-      for (int j = 2 * y; j < std::min(2 * y + 2, sights.way.rows); ++j)
-        for (int i = 2 * x; i < std::min(2 * x + 2, sights.way.cols); ++i) {
-          if (!(sights.way(j, i) > 0)) continue;
-          half.way(y, x) += sights.way(j, i);
-          half.normal(y, x) += sights.normal(j, i);
+  SightImage half((sights.width + 1) / 2, (sights.height + 1) / 2);
+  for (int y = 0; y < half.height; ++y)
+    for (int x = 0; x < half.width; ++x) {
+      float count = 0;
+      Sight sum;
+      sum.normal.setZero();
+      for (int j = 2 * y; j < std::min(2 * y + 2, sights.height); ++j)
+        for (int i = 2 * x; i < std::min(2 * x + 2, sights.width); ++i) {
+          const Sight& one = sights.at(i, j);
+          if (!(one.way > 0)) continue;
+          sum.way += one.way;
+          sum.normal += one.normal;
+          sum.height += one.height;
           ++count;
         }
-      if (count == 0) continue;
-      half.way(y, x) /= static_cast<float>(count);
-      half.normal(y, x) *= 1.0f / static_cast<float>(count);
+      if (count > 0)
+        half.at(x, y) = {Eigen::Vector2f::Zero(), sum.way / count, sum.normal / count,
+                         Eigen::Vector3f::Zero(), sum.height / count};
     }
   return half;
 }
@@ -78,6 +81,12 @@ Eigen::Array3f surface_light(const WaterModel& model, const Sight& sight,
     if (known[static_cast<std::size_t>(k)] && loss.factor[k] >= kLeastFactor)
       surface[k] = (light[k] - loss.veil[k]) / loss.factor[k];
   return surface;
+}
+
+Eigen::Array3f light_of_surface(const WaterModel& model, const Sight& sight,
+                                const Eigen::Array3f& surface) {
+  const Loss loss = loss_of(model, sight);
+  return surface * loss.factor + loss.veil;
 }
 
 std::array<bool, 3> determined(const WaterModel& model) {
@@ -134,15 +143,19 @@ Choice choose_light(const Observations& observations, const Transfer& transfer) 
 }
 
 void fill_sights(SightImage& sights) {
-  if (sights.way.rows <= 1 && sights.way.cols <= 1) return;
-  if (cv::countNonZero(sights.way) == static_cast<int>(sights.way.total())) return;
+  const auto is_empty = [](const Sight& sight) { return !(sight.way > 0); };
+  if (sights.all.size() <= 1 || std::ranges::none_of(sights.all, is_empty)) return;
   SightImage half = halved(sights);
   fill_sights(half);
-  for (int y = 0; y < sights.way.rows; ++y)
-    for (int x = 0; x < sights.way.cols; ++x) {
-      if (sights.way(y, x) > 0) continue;
-      sights.way(y, x) = half.way(y / 2, x / 2);
-      sights.normal(y, x) = half.normal(y / 2, x / 2);
+  for (int y = 0; y < sights.height; ++y)
+    for (int x = 0; x < sights.width; ++x) {
+      Sight& sight = sights.at(x, y);
+      if (!is_empty(sight)) continue;
+      const Sight& coarse = half.at(x / 2, y / 2);
+      if (is_empty(coarse)) continue;
+      sight.way = coarse.way;
+      sight.normal = coarse.normal.normalized();
+      sight.height = coarse.height;
     }
 }
 
@@ -168,26 +181,26 @@ Eigen::Array3f grey_world(const Observations& observations, const WaterModel& mo
 }
 
 Restored restore(const cv::Mat3f& light, const cv::Mat1b& mask, SightImage sights,
-                 const CameraModel& camera, const WaterModel& model, const Rendering& rendering) {
+                 const WaterModel& model, const Rendering& rendering) {
   const bool bytes = rendering.bits == 8;
   const int largest = bytes ? 255 : 65535;
   const float clipped = clipped_light(rendering.transfer);
   const std::array<bool, 3> in_model = determined(model);
   cv::Mat3w pixels(light.size());
   Restored restored{{}, cv::Mat1b(light.size(), 0)};
-  const cv::Mat1f seen = sights.way.clone();
+  const SightImage seen = sights;
   fill_sights(sights);
   parallel_for(static_cast<std::size_t>(light.rows), [&](std::size_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < light.cols; ++x) {
-      const cv::Vec3f &raw = light(y, x), &n = sights.normal(y, x);
+      const cv::Vec3f& raw = light(y, x);
       const Eigen::Array3f color(raw[0], raw[1], raw[2]);
-      const Sight sight{place_of({x, y}, camera), sights.way(y, x),
-                        Eigen::Vector3f(n[0], n[1], n[2]).normalized()};
+      const Eigen::Array3f evenly = color / rendering.exposure;
+      const Sight sight = sights.at(x, y);
       const bool has_sight = sight.way > 0;  // false: the photograph shows no surface at all
       const Eigen::Array3f surface =
-          (has_sight ? surface_light(model, sight, color) : color) * rendering.gain;
-      bool known = seen(y, x) > 0 && (mask.empty() || mask(y, x) != 0);
+          (has_sight ? surface_light(model, sight, evenly) : evenly) * rendering.gain;
+      bool known = seen.at(x, y).way > 0 && (mask.empty() || mask(y, x) != 0);
       const Eigen::Array3f factor = loss_of(model, sight).factor / rendering.gain;
       for (int k = 0; k < 3; ++k) {
         pixels(y, x)[2 - k] = rounded(rendering.transfer.value(surface[k]), largest);

@@ -21,6 +21,10 @@ using WaterModel = std::variant<SunWater, LampField>;
 Eigen::Array3f surface_light(const WaterModel& model, const Sight& sight,
                              const Eigen::Array3f& light);
 
+// The light I = J factor + veil that the model gives for a surface.
+Eigen::Array3f light_of_surface(const WaterModel& model, const Sight& sight,
+                                const Eigen::Array3f& surface);
+
 // Whether the model determines each channel, R G B.
 std::array<bool, 3> determined(const WaterModel& model);
 
@@ -44,15 +48,17 @@ Choice choose_light(const Observations& observations, const Transfer& transfer);
 // channels with differences; infinity if there is none. Null model: of the photographs as they are.
 double spread_of(const Observations& observations, const WaterModel* model);
 
-// Fills pixels without a way from their neighbours, from coarse to fine. Without any pixel that has
-// a way nothing is filled.
+// Fills way, normal and height of pixels without a way from their neighbours, from coarse to fine.
+// Without any pixel that has a way nothing is filled.
 void fill_sights(SightImage& sights);
 
-// How restored light becomes the values of a photograph: R G B are multiplied by `gain`.
+// How the light of a photograph is restored and becomes values: it is divided by `exposure`, and
+// the restored light is multiplied by `gain`, R G B.
 struct Rendering {
   Eigen::Array3f gain = Eigen::Array3f::Ones();
   Transfer transfer;
   int bits = 8;  // 8 or 16
+  Eigen::Array3f exposure = Eigen::Array3f::Ones();
 };
 
 // The gains by which the restored light of the survey is grey in the mean, and by which the
@@ -73,6 +79,6 @@ inline constexpr double kLeastLevels = 4;
 // Restores a photograph. `light`: of light_of(), not marked; `mask`: of its size, or empty;
 // `sights`: of its camera. Pixels without surface are restored as their neighbours are.
 Restored restore(const cv::Mat3f& light, const cv::Mat1b& mask, SightImage sights,
-                 const CameraModel& camera, const WaterModel& model, const Rendering& rendering);
+                 const WaterModel& model, const Rendering& rendering);
 
 }  // namespace axial::color

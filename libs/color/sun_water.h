@@ -18,14 +18,24 @@ struct Estimate {
 
 struct SunChannel {
   Estimate a, b;  // [1/m]
-  Estimate veil;  // B, linear light
-  // Whether the photographs determine `a`: its standard deviation is at most 30 % of it.
+  Estimate veil;  // B, linear light, in the direction SunWater::middle
+  // In other directions, B is larger by the factor exp(this . (direction - middle)): water scatters
+  // daylight more by smaller angles.
+  Eigen::Vector3d veil_by_direction = Eigen::Vector3d::Zero();
+  double direct = 0;  // the share of light that comes from the surface: direct_share()
+  // Whether the photographs determine `a`: its standard deviation is at most 30 % of it, and
+  // `direct` is at least kLeastDirect.
   bool determined = false;
-  double residual = 0;  // robust standard deviation of I, in expected standard deviations
+  bool assumed = false;  // `a` and `b` are those of a type of water (daylight.h)
+  double residual = 0;   // robust standard deviation of I, in expected standard deviations
+  // How fast daylight grows with the height [1/m]; 0: not taken into account.
+  Estimate daylight = {};
 };
 
 struct SunWater {
-  std::array<SunChannel, 3> channels;  // R G B
+  std::array<SunChannel, 3> channels;                // R G B
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  // the mean of Sight::direction
+  double level = 0;  // height at which J is the light of the surface: the median of the points [m]
 
   // I = J factor + veil.
   Eigen::Array3f factor(const Sight& sight) const;

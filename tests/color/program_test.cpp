@@ -18,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 
 class RestoreColors : public axial::test::ProgramTest {
  protected:
@@ -100,6 +101,9 @@ TEST_F(RestoreColors, TakesTheLampsOutOfThePhotographs) {
   // photographs have more noise.
   EXPECT_LT(findings().at("spread_after"), 0.7 * findings().at("spread_before").get<double>());
   EXPECT_LT(angle("restored"), 0.7 * angle("water"));
+  EXPECT_THAT(output, Not(HasSubstr("warning")));
+  // Rings of light stay, and a warning names the cause.
+  EXPECT_THAT(restore("--light sun"), HasSubstr("is it the light of lamps (--light lamp)"));
 }
 
 TEST_F(RestoreColors, WritesTheSameBytesForAnyNumberOfThreads) {
@@ -121,6 +125,18 @@ TEST_F(RestoreColors, MakesTheGreyPatchGrey) {
   EXPECT_EQ(findings().at("white"), "grey patch");
 }
 
+// With heights, the surface becomes as bright as if it was level; a known type is used.
+TEST_F(RestoreColors, RemovesTheLossOfDaylightByDepth) {
+  photograph("--water IB");
+  const std::string without = restore();
+  EXPECT_THAT(without, HasSubstr("heights are not known"));
+  EXPECT_FALSE(findings().at("channels").at("red").contains("daylight_per_m"));
+  restore("--up 0,0,1 --assume jerlov-IB");
+  EXPECT_EQ(findings().at("water_type"), "jerlov-IB");
+  EXPECT_NEAR(findings().at("channels").at("red").at("daylight_per_m").at("value"), 0.22, 0.05);
+  EXPECT_EQ(findings().at("brightness_by_way").size(), 12U);
+}
+
 TEST_F(RestoreColors, RefusesWhatIsWrongInOneLine) {
   photograph("--water 3C");
   const std::string scene = "-i scene.mvs -m mesh.ply --refractive -v 0 --process-priority 0 ";
@@ -137,6 +153,8 @@ TEST_F(RestoreColors, RefusesWhatIsWrongInOneLine) {
   expect_refusal("RestoreColors", scene + "-o restored --grey 0007.jpg:1.5,2,3,4",
                  "must be IMAGE:X,Y,WIDTH,HEIGHT");
   expect_refusal("RestoreColors", scene + "-o water", "--output");
+  expect_refusal("RestoreColors", scene + "-o restored --up 0,0,0", "up 0,0,0: is no direction");
+  expect_refusal("RestoreColors", scene + "-o restored --assume jerlov-2C", "assume");
   EXPECT_FALSE(fs::exists(folder_ / "restored" / "0000.jpg"));
 }
 

@@ -20,29 +20,25 @@ SunWater water() {
   return water;
 }
 
-CameraModel camera() {
-  CameraModel camera;
-  camera.width = 8;
-  camera.height = 6;
-  return camera;
-}
-
 SightImage sights(float way) {
-  return {cv::Mat1f(6, 8, way), cv::Mat3f(6, 8, cv::Vec3f(0, 0, -1))};
+  SightImage image(8, 6);
+  for (Sight& sight : image.all) sight.way = way;
+  return image;
 }
 
 // The light of a surface J (R G B) behind 2 m of water().
 cv::Mat3f light(const Eigen::Array3f& surface) {
-  const Sight sight{{0, 0}, 2, {0, 0, -1}};
+  Sight sight;
+  sight.way = 2;
   const Eigen::Array3f seen = surface * water().factor(sight) + water().veil(sight);
   return cv::Mat3f(6, 8, cv::Vec3f(seen[0], seen[1], seen[2]));
 }
 
 TEST(Restore, GivesTheLightOfTheSurface) {
   const Eigen::Array3f surface(0.2f, 0.4f, 0.1f);
-  const Restored eight = restore(light(surface), {}, sights(2), camera(), water(), {});
+  const Restored eight = restore(light(surface), {}, sights(2), water(), {});
   const Restored sixteen =
-      restore(light(surface), {}, sights(2), camera(), water(), {Eigen::Array3f::Ones(), {}, 16});
+      restore(light(surface), {}, sights(2), water(), {Eigen::Array3f::Ones(), {}, 16});
   ASSERT_EQ(eight.pixels.type(), CV_8UC3);
   ASSERT_EQ(sixteen.pixels.type(), CV_16UC3);
   for (int k = 0; k < 3; ++k) {
@@ -57,22 +53,22 @@ TEST(Restore, TellsWhatIsNotKnown) {
   cv::Mat3f image = light({0.2f, 0.4f, 0.1f});
   image(1, 1)[0] = 0.99f;  // clipped
   SightImage seen = sights(2);
-  seen.way(2, 5) = 0;
-  const Restored restored = restore(image, {}, seen, camera(), water(), {});
+  seen.at(5, 2).way = 0;
+  const Restored restored = restore(image, {}, seen, water(), {});
   EXPECT_EQ(restored.known(1, 1), 0);
   EXPECT_EQ(restored.known(2, 5), 0);
   EXPECT_EQ(cv::countNonZero(restored.known), 46);
   // A pixel without surface is restored as its neighbours are.
   EXPECT_EQ(restored.pixels.at<cv::Vec3b>(2, 5), restored.pixels.at<cv::Vec3b>(2, 4));
   // After 10 m, a four-hundredth of the red light is left: one grey level.
-  EXPECT_EQ(cv::countNonZero(restore(image, {}, sights(10), camera(), water(), {}).known), 0);
+  EXPECT_EQ(cv::countNonZero(restore(image, {}, sights(10), water(), {}).known), 0);
 }
 
 TEST(Restore, ChannelsThatAreNotDeterminedStay) {
   SunWater half = water();
   half.channels[0].determined = false;
   const cv::Mat3f image = light({0.2f, 0.4f, 0.1f});
-  const Restored restored = restore(image, {}, sights(2), camera(), half, {});
+  const Restored restored = restore(image, {}, sights(2), half, {});
   EXPECT_NEAR(restored.pixels.at<cv::Vec3b>(0, 0)[2], 255 * Transfer().value(image(0, 0)[0]), 0.6);
   EXPECT_NEAR(restored.pixels.at<cv::Vec3b>(0, 0)[1], 255 * Transfer().value(0.4f), 0.6);
 }
@@ -81,8 +77,8 @@ TEST(Restore, MasksAndPhotographsWithoutSurfaceAreNotKnown) {
   const cv::Mat3f image = light({0.2f, 0.4f, 0.1f});
   cv::Mat1b mask(6, 8, std::uint8_t{255});
   mask(3, 3) = 0;
-  EXPECT_EQ(cv::countNonZero(restore(image, mask, sights(2), camera(), water(), {}).known), 47);
-  const Restored nothing = restore(image, {}, sights(0), camera(), water(), {});
+  EXPECT_EQ(cv::countNonZero(restore(image, mask, sights(2), water(), {}).known), 47);
+  const Restored nothing = restore(image, {}, sights(0), water(), {});
   EXPECT_EQ(cv::countNonZero(nothing.known), 0);
   EXPECT_NEAR(nothing.pixels.at<cv::Vec3b>(0, 0)[1], 255 * Transfer().value(image(0, 0)[1]), 0.6);
 }
@@ -110,17 +106,22 @@ TEST(GreyWorld, LeavesOutChannelsThatAreNotDetermined) {
 
 TEST(FillSights, TakesTheNearestAndKeepsTheOthers) {
   SightImage seen = sights(0);
-  seen.way(0, 0) = 1;
-  seen.way(5, 7) = 3;
+  seen.at(0, 0).way = 1;
+  seen.at(7, 5).way = 3;
+  seen.at(1, 0).place = {0.5f, 0.25f};
   fill_sights(seen);
-  EXPECT_EQ(seen.way(0, 0), 1);
-  EXPECT_EQ(seen.way(5, 7), 3);
-  EXPECT_EQ(seen.way(0, 1), 1);
-  EXPECT_EQ(seen.way(5, 6), 3);
-  for (const float way : seen.way) EXPECT_GT(way, 0);
+  EXPECT_EQ(seen.at(0, 0).way, 1);
+  EXPECT_EQ(seen.at(7, 5).way, 3);
+  EXPECT_EQ(seen.at(1, 0).way, 1);
+  EXPECT_EQ(seen.at(1, 0).place, Eigen::Vector2f(0.5f, 0.25f));
+  EXPECT_EQ(seen.at(6, 5).way, 3);
+  for (const Sight& sight : seen.all) {
+    EXPECT_GT(sight.way, 0);
+    EXPECT_NEAR(sight.normal.norm(), 1, 1e-6f);
+  }
   SightImage none = sights(0);
   fill_sights(none);
-  EXPECT_EQ(cv::countNonZero(none.way), 0);
+  for (const Sight& sight : none.all) EXPECT_EQ(sight.way, 0);
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ struct Synthetic {
 };
 
 // `seen(sight, J)`: the light of a point. Each point is in six of `views` photographs, at random
-// places and normals, and at ways from `nearest` to `farthest` [m]. `noise`: the standard deviation
-// as a share of the light.
+// places, normals and directions, and at ways from `nearest` to `farthest` [m]. `noise`: the
+// standard deviation as a share of the light.
 inline Synthetic synthetic(
     std::size_t points, float nearest, float farthest, double noise, unsigned seed,
     const std::function<Eigen::Array3f(const Sight&, const Eigen::Array3f&)>& seen,
@@ -41,7 +41,8 @@ inline Synthetic synthetic(
       one.view = (first_view + i) % views;
       one.sight = {{uniform(-1, 1), uniform(-0.75, 0.75)},
                    uniform(nearest, farthest),
-                   Eigen::Vector3f(uniform(-0.5, 0.5), uniform(-0.5, 0.5), -1).normalized()};
+                   Eigen::Vector3f(uniform(-0.5, 0.5), uniform(-0.5, 0.5), -1).normalized(),
+                   Eigen::Vector3f(uniform(-0.6, 0.6), uniform(-0.6, 0.6), -1).normalized()};
       one.light = seen(one.sight, surface);
       for (int k = 0; k < 3; ++k) one.light[k] *= 1 + static_cast<float>(noise) * normal(random);
       one.spread.setZero();

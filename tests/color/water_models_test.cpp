@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "color/exposure.h"
 #include "color/restore.h"
 #include "color/synthetic.h"
 
@@ -48,6 +49,23 @@ TEST(SunWater, ExactLightGivesExactCoefficients) {
   EXPECT_LT(error_of_surfaces(data, water), 1e-3);
 }
 
+// The veil is twice as bright at one end of the directions as at the other.
+TEST(SunWater, FindsAVeilThatDependsOnTheDirection) {
+  const auto brighter = [](const Sight& sight) { return std::exp(0.58f * sight.direction.x()); };
+  const Synthetic data =
+      synthetic(2000, 1, 4, 0.01, 11, [&](const Sight& sight, const Eigen::Array3f& surface) {
+        const Eigen::Array3f direct =
+            in_plain_water(sight, surface) - in_plain_water(sight, Eigen::Array3f::Zero());
+        return Eigen::Array3f(direct +
+                              brighter(sight) * in_plain_water(sight, Eigen::Array3f::Zero()));
+      });
+  const SunWater water = fit_sun(data.observations, {});
+  EXPECT_NEAR(water.channels[1].a.value, 0.3, 0.01);
+  EXPECT_NEAR(water.channels[1].veil_by_direction.x(), 0.58, 0.07);
+  EXPECT_NEAR(water.channels[1].veil_by_direction.y(), 0, 0.07);
+  EXPECT_LT(error_of_surfaces(data, water), 0.02);
+}
+
 TEST(SunWater, ErrorsAreWithinThreeStandardDeviations) {
   const std::array<double, 3> a{0.6, 0.3, 0.2};
   int within = 0, all = 0;
@@ -82,12 +100,58 @@ TEST(SunWater, EqualDistancesDetermineNothing) {
   EXPECT_TRUE((surface_light(water, seen.sight, seen.light) == seen.light).all());
 }
 
+// Multiplies the light of each photograph and channel by a factor within one stop.
+Exposures expose(Observations& observations, std::size_t views) {
+  std::mt19937 random(15);
+  Exposures exposures(views, Eigen::Array3f::Ones());
+  for (Eigen::Array3f& exposure : exposures)
+    for (float& factor : exposure)
+      factor = std::exp2(static_cast<float>(random() % 1000) / 500 - 1);
+  for (Observation& one : observations.all) one.light *= exposures[one.view];
+  return exposures;
+}
+
+// The mean of all exposures cannot be told from the light of the surfaces.
+template <class Fit>
+double error_of_exposures(Synthetic data, const Fit& fit) {
+  constexpr std::size_t kViews = 24;
+  Observations& seen = data.observations;
+  const Exposures truth = expose(seen, kViews);
+  Exposures found = even_exposures(seen, kViews), step = found;
+  for (int i = 0; i < 4; ++i) {
+    seen = divided_by(step, std::move(seen));
+    step = exposures_by(fit(seen), seen, kViews);
+    for (std::size_t view = 0; view < kViews; ++view) found[view] *= step[view];
+  }
+  EXPECT_LT(difference_of(step), 0.005);
+  for (std::size_t view = 0; view < kViews; ++view) found[view] /= truth[view];
+  return difference_of(found);
+}
+
+TEST(Exposures, AreFoundWithTheModel) {
+  const auto sun = [](const Observations& seen) -> WaterModel { return fit_sun(seen, {}); };
+  const auto lamps = [](const Observations& seen) -> WaterModel { return fit_lamps(seen, {}); };
+  EXPECT_LT(error_of_exposures(synthetic(1200, 1, 4, 0.01, 14, in_plain_water), sun), 0.02);
+  EXPECT_LT(error_of_exposures(synthetic(3000, 0.8f, 2, 0.01, 14, in_light_of_lamps), lamps), 0.02);
+}
+
 TEST(LampField, SurfacesComeBackWithoutKnowingTheLamps) {
   const Synthetic data = synthetic(4000, 0.8f, 2, 0.01, 5, in_light_of_lamps);
   const WaterModel lamps = fit_lamps(data.observations, {});
   // The light differs by a factor of 30 between the photographs of a point; a grid of 7 x 5 x 4
   // nodes follows it within 2 %, and the noise is 1 %.
   EXPECT_LT(error_of_surfaces(data, lamps), 0.025);
+}
+
+// A shadow halves the light of a third of the observations: they are marked, and do not matter.
+TEST(LampField, TakesOnlyObservationsWithoutShadows) {
+  Synthetic data = synthetic(4000, 0.8f, 2, 0.01, 5, in_light_of_lamps);
+  Synthetic shadowed = data;
+  for (std::size_t i = 0; i < data.observations.all.size(); i += 3) {
+    shadowed.observations.all[i].light *= 0.5f;
+    shadowed.observations.all[i].open = false;
+  }
+  EXPECT_LT(error_of_surfaces(data, fit_lamps(shadowed.observations, {})), 0.03);
 }
 
 TEST(LampField, IsTheSameForAnyNumberOfThreads) {
