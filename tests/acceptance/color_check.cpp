@@ -4,10 +4,11 @@
 //     color_check TRUTH PHOTOGRAPHS [TRUTH PHOTOGRAPHS ...]
 //
 // TRUTH is the folder "water" of SimulateUnderwater --water, with NAME.albedo.tiff,
-// NAME.distance.tiff and NAME.normal.tiff; PHOTOGRAPHS has NAME.jpg with values of sRGB. Compared
-// are patches of 12 x 12 pixels whose distances differ by less than 3 %, whose normal is within 30
-// degrees of the vertical, and which are not clipped. White is known: each channel is multiplied by
-// the median of albedo over light, over all patches of a folder. Prints one line of JSON:
+// NAME.distance.tiff, NAME.normal.tiff and NAME.lit.tiff; PHOTOGRAPHS has NAME.jpg with values of
+// sRGB. Compared are patches of 12 x 12 pixels whose distances differ by less than 3 %, whose
+// normal is within 30 degrees of the vertical, which are not clipped, and on which there is no
+// shadow: at most 1 % of the light is missing. White is known: each channel is multiplied by the
+// median of albedo over light, over all patches of a folder. Prints one line of JSON:
 //   - "delta_e": the median CIEDE2000 between patch and albedo;
 //   - "angle_degrees": the median angle between them as vectors of linear R G B;
 //   - "slopes": of log(light / albedo) by distance, R G B [1/m];
@@ -56,7 +57,8 @@ void add_patches(const fs::path& truth, const fs::path& photograph, std::vector<
   constexpr int kSide = 12, kCellsX = 8, kCellsY = 6;
   const std::string name = (truth.parent_path() / truth.stem().stem()).string();
   // cv::imread() returns B G R.
-  cv::Mat albedo, distance = read_float(name + ".distance.tiff"), normal;
+  cv::Mat albedo, distance = read_float(name + ".distance.tiff"), normal, lit;
+  if (fs::exists(name + ".lit.tiff")) lit = read_float(name + ".lit.tiff");
   cv::cvtColor(read_float(truth), albedo, cv::COLOR_BGR2RGB);
   cv::cvtColor(read_float(name + ".normal.tiff"), normal, cv::COLOR_BGR2RGB);
   cv::Mat3f light = color::light_of(io::read_photograph(photograph).pixels, 16, {});
@@ -67,6 +69,7 @@ void add_patches(const fs::path& truth, const fs::path& photograph, std::vector<
       double near = 0, far = 0;
       cv::minMaxLoc(distance(part), &near, &far);
       if (!(near > 0) || far > 1.03 * near || mean_of(normal, part)[2] < 0.866f) continue;
+      if (!lit.empty() && mean_of(lit, part)[0] < 0.99f) continue;
       const Patch patch{mean_of(light, part), mean_of(albedo, part), static_cast<float>(far),
                         y * kCellsY / light.rows * kCellsX + x * kCellsX / light.cols};
       const cv::Vec3f& l = patch.light;
