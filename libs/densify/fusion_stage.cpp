@@ -178,8 +178,8 @@ class TileRun {
            {cv::Mat(map.depth), cv::Mat(map.normal), cv::Mat(map.confidence)})
         survey::add_pixels(print, plane);
       // The points of a tile may have colours, which the fingerprint of the maps does not hold.
-      if (const auto& colors = run_.project.views[views_[view].image].colors; !colors.empty())
-        print.add(read_file(colors));
+      const auto& colors = run_.project.views[views_[view].image].colors;
+      if (run_.options.needs_colors() && !colors.empty()) print.add(read_file(colors));
       seen[view] = cloud::boxes_seen(map, reaches);
       contents_[view] = print.hex();
       counter.add();

@@ -178,7 +178,6 @@ class Folder(SurveyCase):
             self.assertLess({picture["before"], picture["after"]}, names)
         self.assertEqual([len(channel["values"]) for channel in colors["channels"]], [0, 3, 4])
         self.assertEqual([row["way_m"] for row in colors["by_way"]], [1, 2, 3])
-        self.put_colors(brightness_by_way=[])
         os.remove(self.path("work", "restored", "colors.json"))
         self.assertIn("warning: ", self.succeeds(*self.view("--colors", "restored")).stdout)
         self.assertEqual(list(self.shown()["colors"]), ["pictures"])

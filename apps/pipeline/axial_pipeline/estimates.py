@@ -61,7 +61,7 @@ def needs_of(given, sizes):
     disk = 2 * OF_FEATURE * sum(features) + (DEPTH_BYTES + CLOUD_BYTES) * sum(depth)
     disk *= 1 if given.until in ("poses", "cloud") else AFTER_THE_CLOUD
     if given.restore_colors:
-        disk += RESTORED_BYTES * sum(width * height for width, height in sizes)
+        disk += RESTORED_BYTES * sum(width * height for width, height in sizes) + CLOUD_BYTES * sum(depth)
     return Needs(seconds, memory, disk, cores)
 
 

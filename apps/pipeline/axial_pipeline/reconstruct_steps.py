@@ -267,6 +267,8 @@ def whole_mesh(run, wanted):
 def map_step(run, name, mesh, output, *options):
     """The step `name`, which makes the maps of a mesh. Their names begin with `output`."""
     words = run.words("map")
+    if name == "raw-map":
+        words = without_options(words, ("--colors",))
     command = run.programs.map_surface(run.scene, mesh, output, *REFRACTIVE,
                                        *mask_words(run.words("texture"), words), *options, *words)
     made = [output.with_name(f"{output.name}.{kind}.tif") for kind in ("dem", "ortho", "views")]

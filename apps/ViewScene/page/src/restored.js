@@ -43,11 +43,12 @@ function chart(rows) {
   const line = (key, k) => draw("polyline", {
     class: key, stroke: COLORS[k],
     points: rows.map(row => `${x(row.way_m).toFixed(1)},${y(row[key][k]).toFixed(1)}`).join(" ") });
+  const known = CHANNELS.map((_, k) => k).filter(k => rows.some(row => row.after[k] > 0));
   const text = (at, words, anchor) => draw("text", { x: at[0], y: at[1], "text-anchor": anchor }, words);
   const axes = draw("path", { class: "axes", d: `M${LEFT},${TOP}V${HEIGHT - BOTTOM}H${WIDTH - RIGHT}` });
-  const label = "Mean relative light by the way in water: dashed before, solid after";
+  const label = "Median relative light by the way in water: dashed before, solid after";
   return draw("svg", { id: "by-way", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": label }, axes,
-              ...["before", "after"].flatMap(key => CHANNELS.map((_, k) => line(key, k))),
+              ...["before", "after"].flatMap(key => known.map(k => line(key, k))),
               text([LEFT - 4, y(0)], "0", "end"), text([LEFT - 4, TOP + 10], most.toPrecision(2), "end"),
               text([LEFT, HEIGHT - 16], low.toFixed(1), "start"),
               text([WIDTH - RIGHT, HEIGHT - 16], high.toFixed(1), "end"),
@@ -56,7 +57,7 @@ function chart(rows) {
 
 const brightness = rows => rows?.length ? [
   make("h2", {}, "Brightness by distance"), chart(rows),
-  make("p", { class: "hint" }, "Mean relative light. Dashed: before; solid: after. Level lines: no water is left.")
+  make("p", { class: "hint" }, "Median relative light. Dashed: before; solid: after. Level lines: no water is left.")
 ] : [];
 
 /** A photograph before, and over its left part, up to a slider, after. */
