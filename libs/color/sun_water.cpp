@@ -275,6 +275,23 @@ Matrix covariance_of(const Channel& channel, const Vector& p, double prior, doub
   return inverse * at.scatter * inverse;
 }
 
+// The error of `a` that the scatter of the observations does not show. The light of a piece of the
+// surface is the same in all photographs to 0.1 % only, and a changes the light by the differences
+// of the ways of a point; the model is right to 2 % of a. `direct`: direct_share().
+double systematic_error(const Channel& channel, double a, double direct) {
+  constexpr double kShareOfLight = 0.001, kShareOfModel = 0.02;
+  double squares = 0;
+  for (std::size_t point = 0; point < channel.points(); ++point) {
+    const std::size_t begin = channel.first[point], end = channel.first[point + 1];
+    double mean = 0;
+    for (std::size_t i = begin; i < end; ++i)
+      mean += channel.sights[i].way / static_cast<double>(end - begin);
+    for (std::size_t i = begin; i < end; ++i) squares += std::pow(channel.sights[i].way - mean, 2);
+  }
+  const double ways = std::sqrt(squares / static_cast<double>(channel.light.size()));
+  return std::hypot(kShareOfLight / std::max(direct * ways, 1e-9), kShareOfModel * a);
+}
+
 SunChannel fit(Channel channel) {
   constexpr std::size_t kLeastPoints = 10;
   constexpr int kReweighted = 8;
@@ -294,14 +311,14 @@ SunChannel fit(Channel channel) {
   const double b = veil_rate(p);
   Vector of_b = Vector::Zero();
   of_b.head<2>() << b / p[0], b;  // the derivatives of b
-  // Pieces of the surface are averaged alike to a few per cent only.
-  constexpr double kShareOfModel = 0.02;
-  result.a = {p[0], std::hypot(std::sqrt(std::max(0.0, covariance(0, 0))), kShareOfModel * p[0])};
+  const Normal at = normal_at(channel, p, prior);
+  result.direct = direct_share(channel, at.factors, at.surfaces);
+  const double a_sigma = std::hypot(std::sqrt(std::max(0.0, covariance(0, 0))),
+                                    systematic_error(channel, p[0], result.direct));
+  result.a = {p[0], a_sigma};
   result.b = {b, std::sqrt(std::max(0.0, of_b.dot(covariance * of_b)))};
   result.veil = {p[2], std::sqrt(std::max(0.0, covariance(2, 2)))};
   result.veil_by_direction = p.tail<3>();
-  const Normal at = normal_at(channel, p, prior);
-  result.direct = direct_share(channel, at.factors, at.surfaces);
   result.determined =
       result.a.sigma <= kLargestShare * result.a.value && result.direct >= kLeastDirect;
   return result;
