@@ -159,9 +159,10 @@ std::optional<SeenSurface::Point> SeenSurface::on_ray(const Eigen::Vector3d& sta
                                                       const Eigen::Vector3d& direction) const {
   const auto hit = surface_.first_hit(start, direction);
   if (!hit || (!mesh_.unseen.empty() && mesh_.unseen[hit->face] != 0)) return std::nullopt;
-  const auto& [a, b, c] = mesh_.faces[hit->face];
+  const auto& corners = mesh_.faces[hit->face];
   const auto between = [&](const std::vector<Eigen::Vector3f>& of) -> Eigen::Vector3f {
-    return (1 - hit->u - hit->v) * of[a] + hit->u * of[b] + hit->v * of[c];
+    return (1 - hit->u - hit->v) * of[corners[0]] + hit->u * of[corners[1]] +
+           hit->v * of[corners[2]];
   };
   return Point{between(mesh_.vertices).cast<double>(), surface_.face_normal(hit->face),
                between(normals_).normalized()};
