@@ -104,11 +104,12 @@ color::Exposures fit_exposures(const Settings& settings, std::size_t views,
   return exposures;
 }
 
-Findings find(const Settings& settings, const survey::Survey& survey,
-              const color::SeenSurface& surface, const Context& context) {
-  context.memory().require(color::bytes_to_observe(settings.observe) + bytes_to_restore(survey),
-                           "looking at photographs");
-  color::Observations observations = surface.observe(
+color::Observations observe(const Settings& settings, const survey::Survey& survey,
+                            const color::SeenSurface& surface, const Context& context) {
+  context.memory().require(
+      color::SeenSurface::bytes_to_observe(settings.observe) + bytes_to_restore(survey),
+      "looking at photographs");
+  const color::Observations observations = surface.observe(
       survey::posed_cameras(survey),
       [&](std::size_t view) {
         PhotographLight photograph = read_light(survey, view, settings.transfer);
@@ -121,6 +122,12 @@ Findings find(const Settings& settings, const survey::Survey& survey,
             "only {} even pieces of the mesh are in two photographs or more: must be 100",
             observations.points());
   context.memory().require(observations.all.size() * kBytesToFit, "comparing colours");
+  return observations;
+}
+
+Findings find(const Settings& settings, const survey::Survey& survey,
+              const color::SeenSurface& surface, const Context& context) {
+  color::Observations observations = observe(settings, survey, surface, context);
   Findings findings;
   const std::size_t views = survey.views.size();
   findings.raw_spread = color::spread_of(observations, nullptr);

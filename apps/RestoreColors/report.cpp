@@ -68,7 +68,7 @@ void log_daylight(const color::Daylight& daylight) {
   log_info(
       "Water like {}: by depth, daylight loses {:.3f} +- {:.3f}, {:.3f} +- {:.3f} and "
       "{:.3f} +- {:.3f} /m (R G B)",
-      color::name_of(daylight.type.value), losses[0].value, losses[0].sigma, losses[1].value,
+      color::name_of(daylight.type), losses[0].value, losses[0].sigma, losses[1].value,
       losses[1].sigma, losses[2].value, losses[2].sigma);
 }
 
@@ -146,7 +146,7 @@ void write_findings(const std::filesystem::path& folder, const Findings& finding
   if (!findings.light_given)
     file["spread_of_models"] = {{"sun", findings.choice.sun_spread},
                                 {"lamp", findings.choice.lamp_spread}};
-  if (findings.daylight) file["water_type"] = color::name_of(findings.daylight->type.value);
+  if (findings.daylight) file["water_type"] = color::name_of(findings.daylight->type);
   for (const color::BrightnessAt& layer : findings.brightness)
     file["brightness_by_way"].push_back(describe(layer));
   std::visit(

@@ -12,6 +12,7 @@
 #include "io/images/image.h"
 #include "json_fields.h"
 #include "scene/resolution.h"
+#include "survey/colors.h"
 
 namespace axial::apps {
 namespace {
@@ -22,7 +23,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostCompared = 6;
 constexpr int kComparedWidth = 800;      // of the pictures, at most [px]
 constexpr int kComparedQuality = 88;     // of JPEG files
-constexpr int kBitsOfRestored = 16;      // that the values of restored pictures of 16 bits use
 constexpr std::size_t kMostWays = 1000;  // points of the chart
 
 bool flag_of(const JsonField& field) {
@@ -143,7 +143,7 @@ Json restored_colors(const survey::Survey& survey, const fs::path& staging,
     const std::string before = fmt::format("colors/{:05}.before.jpg", views[i]);
     const std::string after = fmt::format("colors/{:05}.after.jpg", views[i]);
     write_picture(staging / before, view.file, survey.bit_depth);
-    write_picture(staging / after, view.colors, kBitsOfRestored);
+    write_picture(staging / after, view.colors, survey::kBitsOfColors);
     pictures[i] = {{"name", view.file.filename().string()}, {"before", before}, {"after", after}};
   });
   data["pictures"] = pictures;

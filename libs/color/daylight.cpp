@@ -157,18 +157,16 @@ std::optional<Daylight> daylight_of(const SunWater& water, std::optional<WaterTy
   if (!known && std::ranges::none_of(water.channels, &SunChannel::determined)) return {};
   const std::vector<Candidate> all = candidates(water, known);
   const Candidate& best = *std::ranges::min_element(all, {}, &Candidate::cost);
-  Weighted type;
   std::array<Weighted, 3> losses, beams;
   for (const Candidate& candidate : all) {
     const double weight = std::exp(best.cost - candidate.cost);
-    type.add(candidate.type, weight);
     for (std::size_t k = 0; k < 3; ++k) {
       losses[k].add(candidate.daylight[static_cast<Eigen::Index>(k)], weight);
       beams[k].add(candidate.beams[static_cast<Eigen::Index>(k)], weight);
     }
   }
   Daylight daylight;
-  daylight.type = {best.type, type.estimate().sigma};
+  daylight.type = best.type;
   for (std::size_t k = 0; k < 3; ++k) {
     daylight.losses[k] = losses[k].estimate();
     daylight.beams[k] = beams[k].estimate();

@@ -28,7 +28,7 @@ std::string name_of(WaterType type);
 // What kind of water loses the light as the channels that are determined say. The standard
 // deviations contain those of the channels and the unknown scattering.
 struct Daylight {
-  Estimate type;                   // WaterType: the one that agrees best
+  WaterType type = 0;              // the one that agrees best
   std::array<Estimate, 3> losses;  // K_d of R G B [1/m]
   std::array<Estimate, 3> beams;   // loss along a ray of R G B [1/m]
 };

@@ -141,11 +141,11 @@ Observations without_shadows(const Observations& observations) {
   return open;
 }
 
-std::uint64_t bytes_to_observe(const ObserveOptions& options) {
+std::uint64_t SeenSurface::bytes_to_observe(const ObserveOptions& options) {
   constexpr std::uint64_t kSeenBy = 20;  // photographs that show a point
   // A point while those on uneven places are left out; its observations by view, by point, and
   // sorted.
-  return options.points * (2 * 480 + kSeenBy * 3 * sizeof(Observation));
+  return options.points * (2 * sizeof(Point) + kSeenBy * 3 * sizeof(Observation));
 }
 
 std::uint64_t bytes_to_see(const Mesh& mesh) {

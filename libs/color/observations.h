@@ -102,6 +102,9 @@ class SeenSurface {
   Observations observe(std::span<const geometry::PosedCamera> cameras, const LightSource& lights,
                        const ObserveOptions& options, const Context& context) const;
 
+  // The memory [bytes] of observe(), besides the photographs, if a point is in 20 of them.
+  static std::uint64_t bytes_to_observe(const ObserveOptions& options);
+
   SightImage sights(const geometry::PosedCamera& camera) const;
 
  private:
@@ -131,10 +134,6 @@ class SeenSurface {
   geometry::Surface surface_;
   std::vector<Eigen::Vector3f> normals_;  // at vertices
 };
-
-// The memory [bytes] of SeenSurface::observe(), besides the photographs, if a point is in 20 of
-// them.
-std::uint64_t bytes_to_observe(const ObserveOptions& options);
 
 // The memory [bytes] of a SeenSurface of `mesh` while it is made.
 std::uint64_t bytes_to_see(const Mesh& mesh);

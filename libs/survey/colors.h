@@ -8,6 +8,9 @@
 
 namespace axial::survey {
 
+// The number of bits that the values of pictures of 16 bits use: all of them.
+inline constexpr int kBitsOfColors = 16;
+
 // The name of the picture without water of a photograph: its own for JPEG and PNG, otherwise with
 // the extension .png.
 std::filesystem::path restored_name(const std::filesystem::path& photograph);

@@ -7,6 +7,7 @@
 #include "io/images/image.h"
 #include "scene/resolution.h"
 #include "survey/black_border.h"
+#include "survey/colors.h"
 #include "survey/memory_survey.h"
 
 namespace axial::survey {
@@ -15,8 +16,6 @@ namespace {
 cv::Size size_of(const View& view) {
   return {view.camera.width, view.camera.height};
 }
-
-constexpr int kAllBits = 16;  // restored pictures use all bits of their values
 
 // Decoded pixels in 8 bits at the resolution of the camera.
 cv::Mat3b at_working_size(cv::Mat pixels, int bit_depth, const View& view) {
@@ -90,7 +89,7 @@ Pixels Photographs::read(std::size_t view, Channels channels) const {
   }
   if (channels == Channels::grey || !from.colors.empty()) result.color.release();
   if (channels != Channels::grey && !from.colors.empty())
-    result.color = at_working_size(io::read_photograph(from.colors).pixels, kAllBits, from);
+    result.color = at_working_size(io::read_photograph(from.colors).pixels, kBitsOfColors, from);
   if (survey_.photograph_check && channels == Channels::color)
     survey_.photograph_check->take(from.image, result.color);
   else if (survey_.photograph_check)

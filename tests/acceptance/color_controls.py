@@ -19,7 +19,7 @@ from colors import checked, restore  # noqa: E402
 from points import BASE, point  # noqa: E402
 from support import runs  # noqa: E402
 
-FRESH_SEEDS = (161,)  # not used while building
+FRESH_SEEDS = (162,)  # not used while building
 PRESETS = ("reef", "closeup")
 SIZE = ("--width", 512, "--height", 384, "--coarseness", 2, "--samples", 2)
 WRONG = 0.05  # of the port's distance [m]

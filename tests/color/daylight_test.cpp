@@ -56,7 +56,7 @@ TEST(Daylight, TheTypeIsFoundByTheLossesAlongRays) {
     const auto found = daylight_of(
         water_with({truth->beams[0].value, truth->beams[1].value, truth->beams[2].value}), {});
     ASSERT_TRUE(found);
-    EXPECT_NEAR(found->type.value, type, 1.5) << name;
+    EXPECT_NEAR(found->type, type, 1.5) << name;
     for (std::size_t k = 0; k < 3; ++k) {
       EXPECT_NEAR(found->losses[k].value, truth->losses[k].value, 3 * found->losses[k].sigma);
       EXPECT_LT(found->losses[k].sigma, 0.3 * truth->losses[k].value + 0.1);

@@ -60,16 +60,9 @@ TEST_F(ColorsTest, TheLongestEndOfThePathCounts) {
   EXPECT_EQ(Photographs(survey).read(1, Channels::color).color(0, 0), cv::Vec3b(4, 5, 6));
 }
 
-// The left half of the photograph has the label to ignore, its upper quarter is transparent, and
-// its right 10 columns are a black border. Its restored picture has nothing of it.
+// The restored picture has neither mask, nor transparency, nor a border.
 TEST_F(ColorsTest, MaskTransparencyAndBorderAreThoseOfThePhotograph) {
-  cv::Mat4b pixels(kSize, cv::Vec4b(30, 60, 90, 255));
-  pixels.rowRange(0, kSize.height / 4).setTo(cv::Vec4b(30, 60, 90, 0));
-  pixels.colRange(kSize.width - 10, kSize.width).setTo(cv::Vec4b(0, 0, 0, 255));
-  io::write_png(folder_ / "image0.png", pixels);
-  write_mask("image0.mask.png", 7);
-  options_.ignore_mask_label = 0;
-  options_.ignore_black_border = true;
+  use_part_of_first_photograph();
   Survey survey = opened();
   const Pixels restored = Photographs(survey).read(0, Channels::color);
   EXPECT_EQ(restored.color(0, 0), kRestored);

@@ -35,16 +35,8 @@ TEST_F(PhotographsTest, HaveTheChannelsThatAreAskedFor) {
   EXPECT_TRUE(photographs.read(1, Channels::color).grey.empty());
 }
 
-// The left half has the label to ignore, the upper quarter is transparent, the right 10 columns are
-// a black border.
 TEST_F(PhotographsTest, LeaveOutMaskTransparencyAndBlackBorder) {
-  cv::Mat4b pixels(kSize, cv::Vec4b(30, 60, 90, 255));
-  pixels.rowRange(0, kSize.height / 4).setTo(cv::Vec4b(30, 60, 90, 0));
-  pixels.colRange(kSize.width - 10, kSize.width).setTo(cv::Vec4b(0, 0, 0, 255));
-  io::write_png(folder_ / "image0.png", pixels);
-  write_mask("image0.mask.png", 7);
-  options_.ignore_mask_label = 0;
-  options_.ignore_black_border = true;
+  use_part_of_first_photograph();
   const Survey survey = opened();
   EXPECT_TRUE(survey.views[0].masked());
   const cv::Mat1b mask = Photographs(survey).read(0, Channels::color).mask;

@@ -49,6 +49,18 @@ class SmallSurvey : public testing::Test {
     io::write_png(folder_ / name, mask);
   }
 
+  // Of image0.png, the left half has the label to ignore, the upper quarter is transparent, and the
+  // right 10 columns are a black border.
+  void use_part_of_first_photograph() {
+    cv::Mat4b pixels(kSize, cv::Vec4b(30, 60, 90, 255));
+    pixels.rowRange(0, kSize.height / 4).setTo(cv::Vec4b(30, 60, 90, 0));
+    pixels.colRange(kSize.width - 10, kSize.width).setTo(cv::Vec4b(0, 0, 0, 255));
+    io::write_png(folder_ / "image0.png", pixels);
+    write_mask("image0.mask.png", 7);
+    options_.ignore_mask_label = 0;
+    options_.ignore_black_border = true;
+  }
+
   // The survey with its photographs.
   survey::Survey opened() {
     survey::Survey survey = survey::open_scene(options_);
