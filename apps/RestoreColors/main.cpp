@@ -17,6 +17,8 @@
 #include "photographs.h"
 #include "report.h"
 #include "scene/check_mesh.h"
+#include "unfinished.h"
+#include "white.h"
 
 namespace axial::apps {
 namespace {
@@ -138,6 +140,7 @@ Findings find(const Settings& settings, const survey::Survey& survey,
   findings.exposures_left =
       color::difference_of(color::exposures_by(findings.choice.model, observations, views));
   use_daylight(settings, observations, !up_of(settings, survey).isZero(), findings, context);
+  findings.curve = settings.curve;
   findings.light_given = settings.light.has_value();
   findings.points = observations.points();
   findings.observations = observations.all.size();
@@ -151,6 +154,31 @@ Findings find(const Settings& settings, const survey::Survey& survey,
   findings.unevenness = color::unevenness_by_place(observations, findings.choice.model);
   findings.brightness = color::brightness_by_way(observations, findings.choice.model);
   return findings;
+}
+
+// Restores the photographs that an earlier run has not restored. Returns the share of pixels whose
+// colour is determined.
+double restore_photographs(const Settings& settings, const survey::Survey& survey,
+                           const color::SeenSurface& surface, const Findings& findings,
+                           const Unfinished& unfinished, const Context& context) {
+  ProgressCounter progress(context.stage("Restoring photographs"), survey.views.size());
+  double known = 0, all = 0;
+  std::size_t earlier = 0;
+  for (std::size_t view = 0; view < survey.views.size(); ++view) {
+    all += static_cast<double>(survey.views[view].pixels());
+    if (const auto pixels = unfinished.known_pixels(view)) {
+      known += static_cast<double>(*pixels);
+      ++earlier;
+    } else {
+      const color::Restored restored =
+          restored_photograph(settings, survey, surface, findings, view);
+      unfinished.write(view, restored, settings.jpeg_quality);
+      known += cv::countNonZero(restored.known);
+    }
+    progress.add();
+  }
+  if (earlier > 0) log_info("{} photographs were restored by an earlier run", earlier);
+  return known / all;
 }
 
 int run(int argc, char** argv) {
@@ -168,19 +196,19 @@ int run(int argc, char** argv) {
   survey.add_inputs(io::files_of_mesh(settings.mesh));
   const OutputNames names = output_names(settings, survey);
   check_outputs(settings, survey, names);
-  if (settings.grey) view_of_grey(*settings.grey, survey);
+  const WhiteViews white = white_views(settings, survey);
   context.memory().require(color::bytes_to_see(mesh) + bytes_to_restore(survey),
                            "restoring photographs");
   check_scene(settings, survey, mesh, context);
   const color::SeenSurface surface(mesh, up_of(settings, survey));
   Findings findings = find(settings, survey, surface, context);
-  if (settings.grey) {
-    findings.gain = grey_gain(settings, survey, surface, findings);
-    findings.grey_given = true;
-  }
+  find_white(settings, survey, surface, white, findings, context);
   log_findings(findings, context);
+  const Unfinished unfinished(settings.output, names,
+                              made_from(settings, survey, findings, context));
+  findings.known = restore_photographs(settings, survey, surface, findings, unfinished, context);
   write_folder(settings.output, [&](const std::filesystem::path& staging) {
-    findings.known = write_restored(settings, survey, surface, findings, names, staging, context);
+    unfinished.move_into(staging);
     write_findings(staging, findings);
   });
   log_info("{} photographs without water in {}", survey.views.size(), settings.output.string());

@@ -20,7 +20,7 @@ namespace {
 
 // The values of the command line before they are checked and converted.
 struct Raw {
-  std::string input, light = "auto", curve = "srgb", grey, up, assumed, exposure = "one";
+  std::string input, light = "auto", grey, up, assumed, exposure = "one";
   io::SceneOptions scene;
 };
 
@@ -53,7 +53,7 @@ void declare(OptionList& list, Raw& raw, Settings& settings) {
                         "light of the photographs: sun, lamp (lamps that move with the camera), or "
                         "auto: by the photographs")
       .one_of({"auto", "sun", "lamp"})
-      .add_with_default("curve", &raw.curve,
+      .add_with_default("curve", &settings.curve,
                         "how the photographs' values stand for light: srgb, linear or gamma:G")
       .add_with_default(
           "exposure", &raw.exposure,
@@ -63,6 +63,9 @@ void declare(OptionList& list, Raw& raw, Settings& settings) {
       .add("grey", &raw.grey,
            "a part of a photograph that is grey in white light: IMAGE:X,Y,WIDTH,HEIGHT [px] "
            "(default: the seabed is grey in the mean)")
+      .add("chart", &settings.chart,
+           "white by a colour chart of 24 patches: the name of a photograph that shows it, or all: "
+           "it is looked for in all photographs")
       .add("assume", &raw.assumed,
            "type of water, for channels that the photographs do not determine in daylight")
       .one_of({"jerlov-I", "jerlov-IA", "jerlov-IB", "jerlov-II", "jerlov-III", "jerlov-1C",
@@ -90,11 +93,13 @@ void convert(const Raw& raw, Options& options) {
   if (settings.output.empty()) fail("no output folder given (-o DIR)");
   if (raw.light == "sun") settings.light = color::Light::sun;
   if (raw.light == "lamp") settings.light = color::Light::lamp;
-  settings.transfer = color::Transfer::parse(raw.curve);
+  settings.transfer = color::Transfer::parse(settings.curve);
   settings.each_exposure = raw.exposure == "each";
   settings.up = map::parse_up(raw.up, 0);
   if (!raw.assumed.empty()) settings.assumed = color::parse_water_type(raw.assumed);
   if (!raw.grey.empty()) settings.grey = grey_of(raw.grey);
+  if (settings.grey && !settings.chart.empty())
+    fail("--grey and --chart both give white; give one of them");
   survey::take_masks(options.parsed, settings.survey);
 }
 

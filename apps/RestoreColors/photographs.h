@@ -23,6 +23,11 @@ struct PhotographLight {
 PhotographLight read_light(const survey::Survey& survey, std::size_t view,
                            const color::Transfer& transfer);
 
+geometry::PosedCamera posed(const survey::View& view);
+
+// The exposure by which the light of a view's photograph is divided.
+Eigen::Array3f exposure_of(const Findings& findings, std::size_t view);
+
 // The files of a run below the folder of the output.
 struct OutputNames {
   // Of the views' photographs: their paths below the folder that contains them all. JPEG and PNG
@@ -36,23 +41,12 @@ OutputNames output_names(const Settings& settings, const survey::Survey& survey)
 void check_outputs(const Settings& settings, const survey::Survey& survey,
                    const OutputNames& names);
 
-// Restores and writes all photographs, and with Settings::masks the masks, into `folder`. Returns
-// the share of pixels whose colour is determined.
-double write_restored(const Settings& settings, const survey::Survey& survey,
-                      const color::SeenSurface& surface, const Findings& findings,
-                      const OutputNames& names, const std::filesystem::path& folder,
-                      const Context& context);
+// The photograph of a view without water.
+color::Restored restored_photograph(const Settings& settings, const survey::Survey& survey,
+                                    const color::SeenSurface& surface, const Findings& findings,
+                                    std::size_t view);
 
-// The view whose photograph has Settings::grey. Error if not exactly one photograph's path ends
-// with the name, and if the part lies outside the photograph.
-std::size_t view_of_grey(const GreyPatch& grey, const survey::Survey& survey);
-
-// The gains by which Settings::grey is grey, as bright as by Findings::gain. Errors as for
-// view_of_grey(), and if its light is not known.
-Eigen::Array3f grey_gain(const Settings& settings, const survey::Survey& survey,
-                         const color::SeenSurface& surface, const Findings& findings);
-
-// The memory [bytes] of write_restored() besides the surface, for the largest photograph.
+// The memory [bytes] of restored_photograph() besides the surface, for the largest photograph.
 std::uint64_t bytes_to_restore(const survey::Survey& survey);
 
 }  // namespace axial::apps

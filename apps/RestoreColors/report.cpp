@@ -33,8 +33,12 @@ json describe(const color::SunChannel& channel) {
   return described;
 }
 
+// NaN becomes null.
+json list(const Eigen::Array3f& color) {
+  return {color[0], color[1], color[2]};
+}
+
 json describe(const color::BrightnessAt& layer) {
-  const auto list = [](const Eigen::Array3f& color) { return json{color[0], color[1], color[2]}; };
   return {{"way_m", layer.way}, {"before", list(layer.before)}, {"after", list(layer.after)}};
 }
 
@@ -43,6 +47,27 @@ json describe(const color::LampChannel& channel) {
           {"direct", channel.direct},
           {"determined", channel.determined},
           {"residual_in_sigmas", channel.residual}};
+}
+
+json describe(const SeenChart& chart) {
+  json patches = json::array();
+  for (const Eigen::Array3f& light : chart.lights) patches.push_back(list(light));
+  return {{"photograph", chart.photograph},
+          {"ciede2000", chart.error},
+          {"gain", list(chart.gain)},
+          {"patches", patches}};
+}
+
+const char* name_of(White white) {
+  switch (white) {
+    case White::grey_seabed:
+      return "grey seabed";
+    case White::grey_part:
+      return "grey patch";
+    case White::charts:
+      return "charts";
+  }
+  return "";
 }
 
 const char* name_of(color::Light light) {
@@ -106,6 +131,22 @@ void check_agreement(const Findings& findings, const Context& context) {
         100 * findings.spread);
 }
 
+// Warns of charts that do not agree.
+void log_charts(const Findings& findings, const Context& context) {
+  constexpr float kMostDifferent = 0.15f;
+  for (const SeenChart& chart : findings.charts) {
+    log_info(
+        "Colour chart in {}: its patches differ from the published colours by CIEDE2000 {:.1f}",
+        chart.photograph, chart.error);
+    const float different = (chart.gain / findings.gain - 1).abs().maxCoeff();
+    if (different > kMostDifferent)
+      context.warning(
+          "the chart in {} gives a white that differs by {:.0f} % from that of all charts: is a "
+          "shadow on it, or are the exposures different?",
+          chart.photograph, 100 * different);
+  }
+}
+
 }  // namespace
 
 void log_findings(const Findings& findings, const Context& context) {
@@ -125,15 +166,23 @@ void log_findings(const Findings& findings, const Context& context) {
       context.warning(
           "the loss of {} light is not determined by the photographs: {} stays as it is", kNames[k],
           kNames[k]);
-  if (!findings.grey_given)
+  log_charts(findings, context);
+  if (findings.curve == "srgb")
+    context.info(
+        "The curve of the camera is not known: values are taken for light by the curve of sRGB. "
+        "Photographs that were developed from raw files with gamma 1 need --curve linear");
+  if (findings.white == White::grey_seabed)
     context.info(
         "White is an assumption: the seabed is taken for grey in the mean. --grey names "
-        "something grey");
+        "something grey, --chart a colour chart");
 }
 
-void write_findings(const std::filesystem::path& folder, const Findings& findings) {
+namespace {
+
+json describe(const Findings& findings) {
   json file = {{"light", name_of(findings.choice.light)},
                {"light_given", findings.light_given},
+               {"curve", findings.curve},
                {"points", findings.points},
                {"observations", findings.observations},
                {"spread_before", findings.raw_spread},
@@ -141,11 +190,12 @@ void write_findings(const std::filesystem::path& folder, const Findings& finding
                {"unevenness_by_place", findings.unevenness},
                {"determined_pixels", findings.known},
                {"exposure", findings.exposures.empty() ? "one" : "each"},
-               {"white", findings.grey_given ? "grey patch" : "grey seabed"},
-               {"gain", {findings.gain[0], findings.gain[1], findings.gain[2]}}};
+               {"white", name_of(findings.white)},
+               {"gain", list(findings.gain)}};
   if (!findings.light_given)
     file["spread_of_models"] = {{"sun", findings.choice.sun_spread},
                                 {"lamp", findings.choice.lamp_spread}};
+  for (const SeenChart& chart : findings.charts) file["charts"].push_back(describe(chart));
   if (findings.daylight) file["water_type"] = color::name_of(findings.daylight->type);
   for (const color::BrightnessAt& layer : findings.brightness)
     file["brightness_by_way"].push_back(describe(layer));
@@ -155,7 +205,17 @@ void write_findings(const std::filesystem::path& folder, const Findings& finding
           file["channels"][kNames[k]] = describe(water.channels[k]);
       },
       findings.choice.model);
-  io::write_json(folder / "colors.json", file);
+  return file;
+}
+
+}  // namespace
+
+std::string description_of(const Findings& findings) {
+  return describe(findings).dump();
+}
+
+void write_findings(const std::filesystem::path& folder, const Findings& findings) {
+  io::write_json(folder / "colors.json", describe(findings));
 }
 
 }  // namespace axial::apps

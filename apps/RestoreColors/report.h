@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "color/brightness.h"
+#include "color/chart.h"
 #include "color/daylight.h"
 #include "color/exposure.h"
 #include "color/restore.h"
@@ -12,9 +13,21 @@
 
 namespace axial::apps {
 
+// What gives white.
+enum class White { grey_seabed, grey_part, charts };
+
+// A colour chart in a photograph.
+struct SeenChart {
+  std::string photograph;     // its name
+  color::PatchLights lights;  // restored, without gain
+  Eigen::Array3f gain;        // by this chart alone
+  double error = 0;           // chart_error() with Findings::gain
+};
+
 struct Findings {
   color::Choice choice;
   bool light_given = false;
+  std::string curve;  // Settings::curve
   std::size_t points = 0, observations = 0;
   double raw_spread = 0, spread = 0;  // of a point's light between photographs
   double unevenness = 0;              // by the place in the image, after restoring
@@ -23,13 +36,17 @@ struct Findings {
   color::Exposures exposures;
   double exposures_left = 0;
   Eigen::Array3f gain = Eigen::Array3f::Ones();
-  bool grey_given = false;
+  White white = White::grey_seabed;
+  std::vector<SeenChart> charts;
   std::optional<color::Daylight> daylight;  // in daylight
   std::vector<color::BrightnessAt> brightness;
 };
 
 // Logs the findings, and warns of channels that are not determined.
 void log_findings(const Findings& findings, const Context& context);
+
+// The content of colors.json.
+std::string description_of(const Findings& findings);
 
 // Writes <folder>/colors.json (docs/formats.md, "Colours without water").
 void write_findings(const std::filesystem::path& folder, const Findings& findings);

@@ -8,7 +8,9 @@
 
 #include "base/atomic_file.h"
 #include "base/order_statistics.h"
+#include "color/chart.h"
 #include "color/transfer.h"
+#include "drawn_chart.h"
 #include "io/bytes/json.h"
 #include "io/images/image.h"
 #include "support/program_run.h"
@@ -115,6 +117,31 @@ TEST_F(RestoreColors, WritesTheSameBytesForAnyNumberOfThreads) {
     EXPECT_EQ(read_file(folder_ / "alone" / name), read_file(folder_ / "restored" / name)) << name;
 }
 
+// A folder in place of a photograph stops the first run.
+TEST_F(RestoreColors, GoesOnWhereAStoppedRunEnded) {
+  photograph("--water 0.9,0.5,0.3,0.8,0.4,0.3,0.05,0.15,0.2");
+  restore("--points 1000 --masks 1");
+  fs::rename(folder_ / "restored", folder_ / "at_once");
+  const fs::path unfinished = folder_ / "restored.unfinished";
+  fs::create_directories(unfinished / "0005.jpg");
+  const std::string options =
+      "-i scene.mvs -m mesh.ply --refractive -o restored -v 0 --points 1000 --process-priority 0 ";
+  expect_refusal("RestoreColors", options + "--masks 1", "0005.jpg");
+  EXPECT_FALSE(fs::exists(folder_ / "restored"));
+  fs::remove_all(unfinished / "0005.jpg");
+  EXPECT_THAT(restore("--points 1000 --masks 1"),
+              HasSubstr("5 photographs were restored by an earlier run"));
+  EXPECT_FALSE(fs::exists(unfinished));
+  for (const char* name : {"0000.jpg", "0007.jpg", "masks/0000.jpg.png", "colors.json"})
+    EXPECT_EQ(read_file(folder_ / "at_once" / name), read_file(folder_ / "restored" / name))
+        << name;
+
+  fs::create_directories(unfinished / "0005.jpg");
+  expect_refusal("RestoreColors", options, "0005.jpg");
+  fs::remove_all(unfinished / "0005.jpg");
+  EXPECT_THAT(restore("--points 1000 --jpeg-quality 90"), Not(HasSubstr("by an earlier run")));
+}
+
 TEST_F(RestoreColors, MakesTheGreyPatchGrey) {
   photograph("--water 0.9,0.5,0.3,0.8,0.4,0.3,0.05,0.15,0.2");
   restore("--grey 0003.jpg:150,110,24,24");
@@ -123,6 +150,52 @@ TEST_F(RestoreColors, MakesTheGreyPatchGrey) {
   EXPECT_NEAR(light[0] / light[1], 1, 0.05);
   EXPECT_NEAR(light[2] / light[1], 1, 0.05);
   EXPECT_EQ(findings().at("white"), "grey patch");
+}
+
+// A chart in one photograph, behind the water of the simulator, with a camera that sees too much
+// red.
+TEST_F(RestoreColors, TakesWhiteFromAColourChart) {
+  photograph("--water 0.9,0.5,0.3,0.8,0.4,0.3,0.05,0.15,0.2");
+  const fs::path file = folder_ / "water" / "0003.jpg";
+  const cv::Mat1f way =
+      cv::imread((folder_ / "water/0003.distance.tiff").string(), cv::IMREAD_UNCHANGED);
+  cv::Mat3f chart(way.size(), cv::Vec3f(-1, -1, -1));
+  const cv::Matx33d map = test::place_chart({160, 120}, 200, 15, 0.05);
+  test::draw_chart(map, chart);
+  cv::Mat pixels = io::read_photograph(file).pixels;
+  const Eigen::Array3f a(0.9f, 0.5f, 0.3f), b(0.8f, 0.4f, 0.3f), veil(0.05f, 0.15f, 0.2f);
+  const Eigen::Array3f cast(0.9f, 0.6f, 0.5f);
+  for (int y = 0; y < way.rows; ++y)
+    for (int x = 0; x < way.cols; ++x) {
+      const cv::Vec3f& albedo = chart(y, x);
+      if (albedo[0] < 0) continue;
+      const Eigen::Array3f surface = Eigen::Array3f(albedo[0], albedo[1], albedo[2]) * cast;
+      const Eigen::Array3f light =
+          surface * (-a * way(y, x)).exp() + veil * (1 - (-b * way(y, x)).exp());
+      for (int k = 0; k < 3; ++k)
+        pixels.at<cv::Vec3b>(y, x)[2 - k] =
+            cv::saturate_cast<uchar>(255 * Transfer().value(light[k]));
+    }
+  io::write_jpeg(file, pixels, 98);
+  restore("--chart 0003.jpg --jpeg-quality 98");
+  EXPECT_EQ(findings().at("white"), "charts");
+  ASSERT_EQ(findings().at("charts").size(), 1U);
+  EXPECT_EQ(findings().at("charts")[0].at("photograph"), "0003.jpg");
+  // The same patches with their white, but with the water.
+  const cv::Mat3f under_water = light_of(pixels, 8, {});
+  PatchLights lights;
+  for (std::size_t i = 0; i < kPatches; ++i) {
+    const cv::Vec3f seen = under_water(cv::Point(test::mapped(map, test::middle_of_patch(i))));
+    lights[i] = {seen[0], seen[1], seen[2]};
+  }
+  EXPECT_LT(findings().at("charts")[0].at("ciede2000"), 0.5 * chart_error(lights, gain_of(lights)));
+  const cv::Mat3f restored =
+      light_of(io::read_photograph(folder_ / "restored/0003.jpg").pixels, 8, {});
+  const cv::Point grey = test::mapped(map, test::middle_of_patch(20));
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(restored(grey)[k] / chart_colors()[20][k], 1, 0.1) << k;
+  expect_refusal("RestoreColors",
+                 "-i scene.mvs -m mesh.ply --refractive -v 0 -o other --chart 0001.jpg",
+                 "no chart of 24 patches was found in this photograph");
 }
 
 // With heights, the surface becomes as bright as if it was level; a known type is used.
@@ -152,6 +225,10 @@ TEST_F(RestoreColors, RefusesWhatIsWrongInOneLine) {
                  "no photograph has this name");
   expect_refusal("RestoreColors", scene + "-o restored --grey 0007.jpg:1.5,2,3,4",
                  "must be IMAGE:X,Y,WIDTH,HEIGHT");
+  expect_refusal("RestoreColors", scene + "-o restored --chart none.jpg",
+                 "--chart none.jpg: no photograph has this name");
+  expect_refusal("RestoreColors", scene + "-o restored --chart all --grey 0000.jpg:1,2,3,4",
+                 "give one of them");
   expect_refusal("RestoreColors", scene + "-o water", "--output");
   expect_refusal("RestoreColors", scene + "-o restored --up 0,0,0", "up 0,0,0: is no direction");
   expect_refusal("RestoreColors", scene + "-o restored --assume jerlov-2C", "assume");

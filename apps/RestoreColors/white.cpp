@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "white.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+
+#include "base/context.h"
+#include "base/error.h"
+#include "base/order_statistics.h"
+#include "color/chart.h"
+#include "photographs.h"
+#include "survey/colors.h"
+
+namespace axial::apps {
+namespace {
+
+// The view of the photograph whose path ends with `name`. Error that begins with `option` if there
+// is not exactly one.
+std::size_t view_named(const std::string& name, const char* option, const survey::Survey& survey) {
+  const auto has_name = [&](const survey::View& view) {
+    const std::string path = view.file.generic_string();
+    return path == name || path.ends_with("/" + name);
+  };
+  const auto found = std::ranges::find_if(survey.views, has_name);
+  if (found == survey.views.end()) fail("{} {}: no photograph has this name", option, name);
+  if (std::ranges::count_if(survey.views, has_name) > 1)
+    fail("{} {}: several photographs have this name; give a folder, too", option, name);
+  return static_cast<std::size_t>(found - survey.views.begin());
+}
+
+// A photograph whose light is restored without white.
+struct SeenLight {
+  SeenLight(const Settings& settings, const survey::Survey& survey,
+            const color::SeenSurface& surface, const Findings& findings, std::size_t view)
+      : photograph(read_light(survey, view, settings.transfer)),
+        sights(surface.sights(posed(survey.views[view]))),
+        exposure(exposure_of(findings, view)),
+        model(findings.choice.model) {
+    usable = photograph.light.clone();
+    color::mark_unusable(usable, photograph.mask, settings.transfer);
+  }
+
+  // The mean light of the surface, of pixels where it is known; NaN if there is none.
+  Eigen::Array3f mean(std::span<const cv::Point> pixels) const {
+    Eigen::Array3f sum = Eigen::Array3f::Zero();
+    int count = 0;
+    for (const cv::Point& pixel : pixels) {
+      const cv::Vec3f& light = usable(pixel);
+      const Eigen::Array3f color = Eigen::Array3f(light[0], light[1], light[2]) / exposure;
+      const color::Sight& sight = sights.at(pixel.x, pixel.y);
+      if (!color.isFinite().all() || !(sight.way > 0)) continue;
+      sum += color::surface_light(model, sight, color);
+      ++count;
+    }
+    if (count == 0) return Eigen::Array3f::Constant(std::numeric_limits<float>::quiet_NaN());
+    return sum / static_cast<float>(count);
+  }
+
+  PhotographLight photograph;
+  cv::Mat3f usable;
+  color::SightImage sights;
+  Eigen::Array3f exposure;
+  const color::WaterModel& model;
+};
+
+void use_grey(const GreyPatch& grey, const SeenLight& light, Findings& findings) {
+  std::vector<cv::Point> pixels;
+  for (int y = grey.part.y; y < grey.part.br().y; ++y)
+    for (int x = grey.part.x; x < grey.part.br().x; ++x) pixels.emplace_back(x, y);
+  const Eigen::Array3f mean = light.mean(pixels);
+  if (!(mean > 0).all())
+    fail("--grey {}: the light of this part is not known: it is clipped, or no surface is there",
+         grey.image);
+  const Eigen::Array3f gain = mean.inverse();
+  findings.gain = gain * (findings.gain.mean() / gain.mean());
+  findings.white = White::grey_part;
+}
+
+// The charts of one photograph.
+std::vector<SeenChart> charts_in(const Settings& settings, const std::string& name,
+                                 const SeenLight& light, const Findings& findings) {
+  const color::Restored restored =
+      color::restore(light.photograph.light, light.photograph.mask, light.sights, light.model,
+                     {findings.gain, settings.transfer, 8, light.exposure});
+  std::vector<SeenChart> charts;
+  for (const color::Chart& chart : color::find_charts(restored.pixels)) {
+    SeenChart seen{name, {}, Eigen::Array3f::Zero(), 0};
+    for (std::size_t patch = 0; patch < color::kPatches; ++patch)
+      seen.lights[patch] = light.mean(color::pixels_of_patch(chart, patch, light.usable.size()));
+    seen.gain = color::gain_of(seen.lights);
+    seen.error = color::chart_error(seen.lights, seen.gain);
+    charts.push_back(seen);
+  }
+  return charts;
+}
+
+// Above this median CIEDE2000 something else was taken for a chart, or the water is not known.
+constexpr double kMostChartError = 20;
+
+void use_charts(const Settings& settings, const survey::Survey& survey,
+                const color::SeenSurface& surface, std::span<const std::size_t> views,
+                Findings& findings, const Context& context) {
+  ProgressCounter progress(context.stage("Looking for colour charts"), views.size());
+  std::size_t unlike = 0;
+  for (const std::size_t view : views) {
+    const std::string name = survey.views[view].file.filename().string();
+    const SeenLight light(settings, survey, surface, findings, view);
+    for (SeenChart& chart : charts_in(settings, name, light, findings)) {
+      if (chart.gain.isFinite().all() && chart.error < kMostChartError)
+        findings.charts.push_back(std::move(chart));
+      else
+        ++unlike;
+    }
+    progress.add();
+  }
+  if (findings.charts.empty() && unlike > 0)
+    fail(
+        "--chart {}: the colours of {} found are not those of a chart of 24 patches, also without "
+        "water",
+        settings.chart, unlike == 1 ? "the chart" : "the charts");
+  if (findings.charts.empty())
+    fail("--chart {}: no chart of 24 patches was found in {}", settings.chart,
+         views.size() == 1 ? "this photograph" : "the photographs");
+  for (int k = 0; k < 3; ++k) {
+    std::vector<float> gains;
+    for (const SeenChart& chart : findings.charts) gains.push_back(chart.gain[k]);
+    findings.gain[k] = upper_median(std::move(gains));
+  }
+  for (SeenChart& chart : findings.charts)
+    chart.error = color::chart_error(chart.lights, findings.gain);
+  findings.white = White::charts;
+}
+
+}  // namespace
+
+WhiteViews white_views(const Settings& settings, const survey::Survey& survey) {
+  WhiteViews views;
+  if (settings.grey) {
+    const GreyPatch& grey = *settings.grey;
+    views.grey = view_named(grey.image, "--grey", survey);
+    const CameraModel& camera = survey.views[views.grey].camera;
+    const cv::Rect all(0, 0, camera.width, camera.height);
+    if ((grey.part & all) != grey.part)
+      fail("--grey {}: the part lies outside the photograph of {} x {} pixels", grey.image,
+           all.width, all.height);
+  }
+  if (settings.chart == "all") {
+    views.charts.resize(survey.views.size());
+    std::iota(views.charts.begin(), views.charts.end(), std::size_t{0});
+  } else if (!settings.chart.empty()) {
+    views.charts.push_back(view_named(settings.chart, "--chart", survey));
+  }
+  return views;
+}
+
+void find_white(const Settings& settings, const survey::Survey& survey,
+                const color::SeenSurface& surface, const WhiteViews& views, Findings& findings,
+                const Context& context) {
+  if (settings.grey)
+    use_grey(*settings.grey, SeenLight(settings, survey, surface, findings, views.grey), findings);
+  if (!views.charts.empty()) use_charts(settings, survey, surface, views.charts, findings, context);
+}
+
+}  // namespace axial::apps
