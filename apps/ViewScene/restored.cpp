@@ -94,11 +94,20 @@ Json ways_of(const JsonField& field) {
   return list;
 }
 
+Json charts_of(const JsonField& field) {
+  Json list = Json::array();
+  for (const JsonField& chart : field.elements())
+    list.push_back({{"photograph", chart.at("photograph").text()},
+                    {"ciede2000", chart.at("ciede2000").number_from_0()}});
+  return list;
+}
+
 void add_findings(const fs::path& file, Json& data) {
   const JsonField whole{file, "", io::read_json(file)};
   data["light"] = choice_of(whole.at("light"), {"sun", "lamp"}, "sun or lamp");
-  data["white"] =
-      choice_of(whole.at("white"), {"grey patch", "grey seabed"}, "grey patch or grey seabed");
+  data["white"] = choice_of(whole.at("white"), {"grey patch", "grey seabed", "charts"},
+                            "grey patch, grey seabed or charts");
+  if (whole.value.contains("charts")) data["charts"] = charts_of(whole.at("charts"));
   for (const char* key : {"spread_before", "spread_after"})
     data[key] = whole.at(key).number_from_0();
   if (whole.value.contains("water_type")) data["water"] = whole.at("water_type").text();

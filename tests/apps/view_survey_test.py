@@ -370,6 +370,12 @@ class Page(SurveyCase):
                      "low contrast (4 times)", "'--images=my photographs'"):
             self.assertIn(part, text)
 
+    def test_the_tab_of_colours_shows_charts(self):
+        self.put_colors(white="charts", charts=[{"photograph": "00001.jpg", "ciede2000": 3.25}])
+        page = SurveyCase.opened(self, "--colors", "restored")
+        page.click_on("[data-tab=restored]")
+        self.assertIn("Chart in 00001.jpg\tCIEDE2000 3.3", page.value("document.getElementById('restored').innerText"))
+
     def test_the_tab_of_colours_compares_photographs(self):
         self.put_colors()
         page = SurveyCase.opened(self, "--colors", "restored")

@@ -15,6 +15,8 @@ const rowsOf = ({ name, assumed, values }) => values.length
 
 const findings = colors => [
   table([["Light", LIGHTS[colors.light]], ["White", colors.white],
+         ...(colors.charts ?? []).map(({ photograph, ciede2000 }) =>
+           [`Chart in ${photograph}`, `CIEDE2000 ${ciede2000.toFixed(1)}`]),
          ...colors.water ? [["Water like", colors.water]] : [],
          ["Differences of a point before", percent(colors.spread_before)],
          ["and after", percent(colors.spread_after)]]),
