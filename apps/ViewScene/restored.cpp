@@ -21,8 +21,9 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostCompared = 6;
-constexpr int kComparedWidth = 800;      // of the pictures, at most [px]
-constexpr int kComparedQuality = 88;     // of JPEG files
+constexpr int kComparedWidth = 800;   // of the pictures, at most [px]
+constexpr int kComparedQuality = 88;  // of JPEG files
+constexpr std::size_t kMostCharts = 1000;
 constexpr std::size_t kMostWays = 1000;  // points of the chart
 
 bool flag_of(const JsonField& field) {
@@ -96,7 +97,10 @@ Json ways_of(const JsonField& field) {
 
 Json charts_of(const JsonField& field) {
   Json list = Json::array();
-  for (const JsonField& chart : field.elements())
+  const std::vector<JsonField> charts = field.elements();
+  if (charts.size() > kMostCharts)
+    fail_in(field.file, "{} has more than {} charts", field.name, kMostCharts);
+  for (const JsonField& chart : charts)
     list.push_back({{"photograph", chart.at("photograph").text()},
                     {"ciede2000", chart.at("ciede2000").number_from_0()}});
   return list;

@@ -192,6 +192,8 @@ class Folder(SurveyCase):
                  ('light "moon": must be sun or lamp', {**found, "light": "moon"}),
                  ("spread_after is missing", {k: v for k, v in found.items() if k != "spread_after"}),
                  ("channels.green.loss_per_m is missing", lamp),
+                 ('charts[0].ciede2000 "3": must be a number',
+                  {**found, "charts": [{"photograph": "a.jpg", "ciede2000": "3"}]}),
                  ("brightness_by_way[0].after [1]: must be three numbers",
                   {**found, "brightness_by_way": [{**row, "after": [1]}]})]
         self.refuses_contents(self.path("work", "restored", "colors.json"), self.view("--colors", "restored"),
