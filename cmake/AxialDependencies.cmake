@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # All external libraries of the project, in the versions of Debian 12.
 find_package(Eigen3 REQUIRED)
-find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs calib3d aruco video videoio)
+find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs calib3d aruco mcc video videoio)
 find_package(JPEG REQUIRED)  # libjpeg-turbo
 find_package(PNG REQUIRED)
 find_package(TIFF REQUIRED)

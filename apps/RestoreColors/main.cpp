@@ -109,7 +109,7 @@ color::Exposures fit_exposures(const Settings& settings, std::size_t views,
 color::Observations observe(const Settings& settings, const survey::Survey& survey,
                             const color::SeenSurface& surface, const Context& context) {
   context.memory().require(
-      color::SeenSurface::bytes_to_observe(settings.observe) + bytes_to_restore(survey),
+      color::SeenSurface::bytes_to_observe(settings.observe) + bytes_to_restore(settings, survey),
       "looking at photographs");
   const color::Observations observations = surface.observe(
       survey::posed_cameras(survey),
@@ -141,6 +141,7 @@ Findings find(const Settings& settings, const survey::Survey& survey,
       color::difference_of(color::exposures_by(findings.choice.model, observations, views));
   use_daylight(settings, observations, !up_of(settings, survey).isZero(), findings, context);
   findings.curve = settings.curve;
+  findings.curve_given = settings.curve_given;
   findings.light_given = settings.light.has_value();
   findings.points = observations.points();
   findings.observations = observations.all.size();
@@ -197,7 +198,7 @@ int run(int argc, char** argv) {
   const OutputNames names = output_names(settings, survey);
   check_outputs(settings, survey, names);
   const WhiteViews white = white_views(settings, survey);
-  context.memory().require(color::bytes_to_see(mesh) + bytes_to_restore(survey),
+  context.memory().require(color::bytes_to_see(mesh) + bytes_to_restore(settings, survey),
                            "restoring photographs");
   check_scene(settings, survey, mesh, context);
   const color::SeenSurface surface(mesh, up_of(settings, survey));
@@ -205,12 +206,13 @@ int run(int argc, char** argv) {
   find_white(settings, survey, surface, white, findings, context);
   log_findings(findings, context);
   const Unfinished unfinished(settings.output, names,
-                              made_from(settings, survey, findings, context));
+                              made_from(settings, survey, mesh, findings, context));
   findings.known = restore_photographs(settings, survey, surface, findings, unfinished, context);
   write_folder(settings.output, [&](const std::filesystem::path& staging) {
-    unfinished.move_into(staging);
+    unfinished.give_to(staging);
     write_findings(staging, findings);
   });
+  unfinished.remove();
   log_info("{} photographs without water in {}", survey.views.size(), settings.output.string());
   return 0;
 }

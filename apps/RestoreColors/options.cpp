@@ -64,8 +64,8 @@ void declare(OptionList& list, Raw& raw, Settings& settings) {
            "a part of a photograph that is grey in white light: IMAGE:X,Y,WIDTH,HEIGHT [px] "
            "(default: the seabed is grey in the mean)")
       .add("chart", &settings.chart,
-           "white by a colour chart of 24 patches: the name of a photograph that shows it, or all: "
-           "it is looked for in all photographs")
+           "white by a colour chart of 24 patches: the end of the path of a photograph that "
+           "shows it, or all: it is looked for in all photographs")
       .add("assume", &raw.assumed,
            "type of water, for channels that the photographs do not determine in daylight")
       .one_of({"jerlov-I", "jerlov-IA", "jerlov-IB", "jerlov-II", "jerlov-III", "jerlov-1C",
@@ -94,6 +94,7 @@ void convert(const Raw& raw, Options& options) {
   if (raw.light == "sun") settings.light = color::Light::sun;
   if (raw.light == "lamp") settings.light = color::Light::lamp;
   settings.transfer = color::Transfer::parse(settings.curve);
+  settings.curve_given = given(options.parsed, "curve");
   settings.each_exposure = raw.exposure == "each";
   settings.up = map::parse_up(raw.up, 0);
   if (!raw.assumed.empty()) settings.assumed = color::parse_water_type(raw.assumed);

@@ -23,12 +23,13 @@ struct Settings {
   survey::Options survey;
   std::filesystem::path mesh, output;
   std::optional<color::Light> light;  // empty: by the photographs
-  std::string curve = "srgb";         // the text from which `transfer` is
+  std::string curve = "srgb";         // the text of `transfer`
+  bool curve_given = false;
   color::Transfer transfer;
   bool each_exposure = false;  // each photograph has an exposure and white balance of its own
   std::optional<GreyPatch> grey;
-  std::string
-      chart;  // "all", or the end of the path of a photograph; empty: no chart is looked for
+  // "all", or the end of the path of a photograph that shows a chart; empty: none is looked for.
+  std::string chart;
   color::ObserveOptions observe;
   std::optional<color::WaterType> assumed;  // the type of water, if it is known
   std::optional<Eigen::Vector3d> up;        // of heights; empty: not given

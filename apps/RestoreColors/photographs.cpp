@@ -4,13 +4,13 @@
 #include <algorithm>
 
 #include "base/atomic_file.h"
-#include "base/context.h"
-#include "base/error.h"
 #include "base/file_extension.h"
 #include "base/same_file.h"
+#include "color/chart.h"
 #include "io/images/image.h"
 #include "survey/colors.h"
 #include "survey/photographs.h"
+#include "unfinished.h"
 
 namespace axial::apps {
 namespace {
@@ -38,6 +38,10 @@ color::Rendering rendering_of(const Settings& settings, const survey::Survey& su
 }
 
 }  // namespace
+
+fs::path photograph_name(const survey::Survey& survey, std::size_t view) {
+  return survey.views[view].file.lexically_relative(common_folder(survey));
+}
 
 geometry::PosedCamera posed(const survey::View& view) {
   return {view.camera, view.pose};
@@ -73,6 +77,8 @@ void check_outputs(const Settings& settings, const survey::Survey& survey,
   std::vector<NamedOutput> outputs{{option, settings.output / "colors.json"}};
   for (const auto* list : {&names.photographs, &names.masks})
     for (const fs::path& name : *list) outputs.push_back({option, settings.output / name});
+  for (const fs::path& file : Unfinished::files(settings.output, names))
+    outputs.push_back({option, file});
   require_different(outputs);
   for (const NamedOutput& output : outputs)
     require_not_an_input(output.path, survey.inputs, option);
@@ -87,13 +93,19 @@ color::Restored restored_photograph(const Settings& settings, const survey::Surv
                         rendering_of(settings, survey, view, findings));
 }
 
-std::uint64_t bytes_to_restore(const survey::Survey& survey) {
+std::uint64_t bytes_to_restore(const Settings& settings, const survey::Survey& survey) {
   // Light with and without marks, sights, their copies while gaps are filled, and the result in 16
   // and 8 bits.
-  constexpr std::uint64_t kEachPixel = 2 * 12 + 2 * sizeof(color::Sight) + 14 + 6 + 3 + 1;
+  std::uint64_t each_pixel = 2 * 12 + 2 * sizeof(color::Sight) + 14 + 6 + 3 + 1;
+  if (!settings.chart.empty()) each_pixel += sizeof(color::Sight);
   std::uint64_t most = 0;
-  for (const survey::View& view : survey.views)
-    most = std::max(most, view.pixels() * (kEachPixel + view.header.decode_bytes));
+  for (const survey::View& view : survey.views) {
+    const std::uint64_t charts =
+        settings.chart.empty()
+            ? 0
+            : color::bytes_to_find_charts({view.camera.width, view.camera.height});
+    most = std::max(most, view.pixels() * (each_pixel + view.header.decode_bytes) + charts);
+  }
   return most;
 }
 

@@ -23,6 +23,9 @@ struct PhotographLight {
 PhotographLight read_light(const survey::Survey& survey, std::size_t view,
                            const color::Transfer& transfer);
 
+// The path of the photograph of a view below the folder that contains all photographs.
+std::filesystem::path photograph_name(const survey::Survey& survey, std::size_t view);
+
 geometry::PosedCamera posed(const survey::View& view);
 
 // The exposure by which the light of a view's photograph is divided.
@@ -46,7 +49,8 @@ color::Restored restored_photograph(const Settings& settings, const survey::Surv
                                     const color::SeenSurface& surface, const Findings& findings,
                                     std::size_t view);
 
-// The memory [bytes] of restored_photograph() besides the surface, for the largest photograph.
-std::uint64_t bytes_to_restore(const survey::Survey& survey);
+// The memory [bytes] of restored_photograph() besides the surface, for the largest photograph. With
+// Settings::chart, that of find_white() (white.h), which is larger.
+std::uint64_t bytes_to_restore(const Settings& settings, const survey::Survey& survey);
 
 }  // namespace axial::apps

@@ -167,7 +167,7 @@ void log_findings(const Findings& findings, const Context& context) {
           "the loss of {} light is not determined by the photographs: {} stays as it is", kNames[k],
           kNames[k]);
   log_charts(findings, context);
-  if (findings.curve == "srgb")
+  if (!findings.curve_given)
     context.info(
         "The curve of the camera is not known: values are taken for light by the curve of sRGB. "
         "Photographs that were developed from raw files with gamma 1 need --curve linear");
@@ -209,10 +209,6 @@ json describe(const Findings& findings) {
 }
 
 }  // namespace
-
-std::string description_of(const Findings& findings) {
-  return describe(findings).dump();
-}
 
 void write_findings(const std::filesystem::path& folder, const Findings& findings) {
   io::write_json(folder / "colors.json", describe(findings));

@@ -18,7 +18,7 @@ enum class White { grey_seabed, grey_part, charts };
 
 // A colour chart in a photograph.
 struct SeenChart {
-  std::string photograph;     // its name
+  std::string photograph;     // photograph_name()
   color::PatchLights lights;  // restored, without gain
   Eigen::Array3f gain;        // by this chart alone
   double error = 0;           // chart_error() with Findings::gain
@@ -28,6 +28,7 @@ struct Findings {
   color::Choice choice;
   bool light_given = false;
   std::string curve;  // Settings::curve
+  bool curve_given = false;
   std::size_t points = 0, observations = 0;
   double raw_spread = 0, spread = 0;  // of a point's light between photographs
   double unevenness = 0;              // by the place in the image, after restoring
@@ -44,9 +45,6 @@ struct Findings {
 
 // Logs the findings, and warns of channels that are not determined.
 void log_findings(const Findings& findings, const Context& context);
-
-// The content of colors.json.
-std::string description_of(const Findings& findings);
 
 // Writes <folder>/colors.json (docs/formats.md, "Colours without water").
 void write_findings(const std::filesystem::path& folder, const Findings& findings);

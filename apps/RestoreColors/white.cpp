@@ -2,6 +2,7 @@
 #include "white.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -12,7 +13,6 @@
 #include "base/order_statistics.h"
 #include "color/chart.h"
 #include "photographs.h"
-#include "survey/colors.h"
 
 namespace axial::apps {
 namespace {
@@ -66,6 +66,13 @@ struct SeenLight {
   const color::WaterModel& model;
 };
 
+// Sets the gain of the channels that the model determines. The others stay as they are.
+void set_gain(const Eigen::Array3f& gain, Findings& findings) {
+  const std::array<bool, 3> known = color::determined(findings.choice.model);
+  for (int k = 0; k < 3; ++k)
+    if (known[static_cast<std::size_t>(k)]) findings.gain[k] = gain[k];
+}
+
 void use_grey(const GreyPatch& grey, const SeenLight& light, Findings& findings) {
   std::vector<cv::Point> pixels;
   for (int y = grey.part.y; y < grey.part.br().y; ++y)
@@ -75,60 +82,72 @@ void use_grey(const GreyPatch& grey, const SeenLight& light, Findings& findings)
     fail("--grey {}: the light of this part is not known: it is clipped, or no surface is there",
          grey.image);
   const Eigen::Array3f gain = mean.inverse();
-  findings.gain = gain * (findings.gain.mean() / gain.mean());
+  set_gain(gain * (findings.gain.mean() / gain.mean()), findings);
   findings.white = White::grey_part;
 }
 
-// The charts of one photograph.
-std::vector<SeenChart> charts_in(const Settings& settings, const std::string& name,
-                                 const SeenLight& light, const Findings& findings) {
+// The charts of one photograph, whether they are charts or not.
+std::vector<SeenChart> charts_in(const std::string& name, const SeenLight& light,
+                                 const Findings& findings) {
+  // Charts are looked for with the curve of sRGB.
   const color::Restored restored =
       color::restore(light.photograph.light, light.photograph.mask, light.sights, light.model,
-                     {findings.gain, settings.transfer, 8, light.exposure});
+                     {findings.gain, color::Transfer(), 8, light.exposure});
   std::vector<SeenChart> charts;
   for (const color::Chart& chart : color::find_charts(restored.pixels)) {
     SeenChart seen{name, {}, Eigen::Array3f::Zero(), 0};
     for (std::size_t patch = 0; patch < color::kPatches; ++patch)
       seen.lights[patch] = light.mean(color::pixels_of_patch(chart, patch, light.usable.size()));
     seen.gain = color::gain_of(seen.lights);
-    seen.error = color::chart_error(seen.lights, seen.gain);
     charts.push_back(seen);
   }
   return charts;
 }
 
-// Above this median CIEDE2000 something else was taken for a chart, or the water is not known.
-constexpr double kMostChartError = 20;
+// Why a chart cannot be used; empty if it can.
+std::string fault_of(const SeenChart& chart, const Findings& findings) {
+  const std::array<bool, 3> known = color::determined(findings.choice.model);
+  for (std::size_t k = 0; k < 3; ++k)
+    if (known[k] && !std::isfinite(chart.gain[static_cast<Eigen::Index>(k)]))
+      return "the light of its grey patches is not known: it is clipped, or no surface is there";
+  const double likeness = color::likeness(chart.lights, known);
+  if (likeness >= color::kLeastLikeness) return "";
+  return fmt::format(
+      "its colours are not those of a chart of 24 patches: their correlation is {:.2f}, and must "
+      "be {} or more",
+      likeness, color::kLeastLikeness);
+}
 
 void use_charts(const Settings& settings, const survey::Survey& survey,
                 const color::SeenSurface& surface, std::span<const std::size_t> views,
                 Findings& findings, const Context& context) {
   ProgressCounter progress(context.stage("Looking for colour charts"), views.size());
-  std::size_t unlike = 0;
+  std::string fault;  // of the last chart that cannot be used
   for (const std::size_t view : views) {
-    const std::string name = survey.views[view].file.filename().string();
+    const std::string name = photograph_name(survey, view).generic_string();
     const SeenLight light(settings, survey, surface, findings, view);
-    for (SeenChart& chart : charts_in(settings, name, light, findings)) {
-      if (chart.gain.isFinite().all() && chart.error < kMostChartError)
+    for (SeenChart& chart : charts_in(name, light, findings)) {
+      const std::string why = fault_of(chart, findings);
+      if (why.empty()) {
         findings.charts.push_back(std::move(chart));
-      else
-        ++unlike;
+        continue;
+      }
+      fault = fmt::format("the chart in {} is not used: {}", name, why);
+      context.info("{}", fault);
     }
     progress.add();
   }
-  if (findings.charts.empty() && unlike > 0)
-    fail(
-        "--chart {}: the colours of {} found are not those of a chart of 24 patches, also without "
-        "water",
-        settings.chart, unlike == 1 ? "the chart" : "the charts");
+  if (findings.charts.empty() && !fault.empty()) fail("--chart {}: {}", settings.chart, fault);
   if (findings.charts.empty())
     fail("--chart {}: no chart of 24 patches was found in {}", settings.chart,
          views.size() == 1 ? "this photograph" : "the photographs");
+  Eigen::Array3f gain;
   for (int k = 0; k < 3; ++k) {
     std::vector<float> gains;
     for (const SeenChart& chart : findings.charts) gains.push_back(chart.gain[k]);
-    findings.gain[k] = upper_median(std::move(gains));
+    gain[k] = static_cast<float>(mean_median(std::move(gains)));
   }
+  set_gain(gain, findings);
   for (SeenChart& chart : findings.charts)
     chart.error = color::chart_error(chart.lights, findings.gain);
   findings.white = White::charts;

@@ -18,8 +18,9 @@ struct WhiteViews {
 WhiteViews white_views(const Settings& settings, const survey::Survey& survey);
 
 // Sets the gain by the grey part or by the charts, if Settings has one of them. A grey part is as
-// bright as with the gain before; charts give the brightness, too. Errors: the light of the grey
-// part is not known; no photograph shows a chart; no chart has known colours.
+// bright as with the gain before; charts give the brightness, too: the median of their gains.
+// Channels that the model does not determine keep their gain. Errors: the light of the grey part is
+// not known; no photograph shows a chart; no chart has the colours of a chart.
 void find_white(const Settings& settings, const survey::Survey& survey,
                 const color::SeenSurface& surface, const WhiteViews& views, Findings& findings,
                 const Context& context);

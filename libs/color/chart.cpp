@@ -2,6 +2,7 @@
 #include "color/chart.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/mcc.hpp>
@@ -23,6 +24,15 @@ constexpr float kWidth = kColumns * (kPatch + kGap) + kGap,
 // The length of a chart in a picture in which it is looked at closely [px].
 constexpr double kClose = 800;
 
+// OpenCV's detector enlarges pictures so that the shorter side has this length [px].
+constexpr int kDetectorSide = 1000;
+constexpr int kMostCharts = 4;
+constexpr double kLongestSide = 2000;  // of the picture in which charts are looked for [px]
+
+double reduction_of(cv::Size size) {
+  return std::min(1.0, kLongestSide / static_cast<double>(std::max(size.width, size.height)));
+}
+
 // OpenCV's detector throws for some pictures without a chart.
 std::vector<Chart> detect(const cv::Mat& pixels, int most) {
   std::vector<Chart> charts;
@@ -33,7 +43,8 @@ std::vector<Chart> detect(const cv::Mat& pixels, int most) {
       const std::vector<cv::Point2f> box = found->getBox();
       if (box.size() == 4) charts.push_back({{box[0], box[1], box[2], box[3]}});
     }
-  } catch (const cv::Exception&) {
+  } catch (const cv::Exception& error) {
+    if (error.code == cv::Error::StsNoMem) throw;
     charts.clear();
   }
   return charts;
@@ -53,15 +64,33 @@ double length_of(const Chart& chart) {
   return longest;
 }
 
+// Whether the middle of one chart lies in the other.
+bool overlap(const Chart& one, const Chart& other) {
+  const auto middle = [](const Chart& chart) {
+    return (chart.corners[0] + chart.corners[1] + chart.corners[2] + chart.corners[3]) / 4;
+  };
+  return cv::pointPolygonTest(other.corners, middle(one), false) >= 0 ||
+         cv::pointPolygonTest(one.corners, middle(other), false) >= 0;
+}
+
+// Pearson's; 0 if one of the lists does not vary. Precondition: equally many values.
+double correlation(std::span<const double> a, std::span<const double> b) {
+  const Eigen::Map<const Eigen::ArrayXd> x(a.data(), static_cast<Eigen::Index>(a.size()));
+  const Eigen::Map<const Eigen::ArrayXd> y(b.data(), static_cast<Eigen::Index>(b.size()));
+  const Eigen::ArrayXd dx = x - x.mean(), dy = y - y.mean();
+  const double scale = std::sqrt(dx.square().sum() * dy.square().sum());
+  return scale > 0 ? (dx * dy).sum() / scale : 0;
+}
+
 // The chart again, in an enlarged part of the photograph: corners of small charts are off by a
 // patch otherwise. Empty if it is not found there.
-std::vector<Chart> seen_closely(const cv::Mat& pixels, const Chart& chart) {
+std::vector<Chart> seen_closely(const cv::Mat3b& pixels, const Chart& chart) {
   const auto margin = static_cast<int>(length_of(chart) / 3);
   cv::Rect part = cv::boundingRect(std::vector(chart.corners.begin(), chart.corners.end()));
   part = cv::Rect(part.x - margin, part.y - margin, part.width + 2 * margin,
                   part.height + 2 * margin) &
          cv::Rect(cv::Point(), pixels.size());
-  if (part.empty()) return {};
+  if (std::min(part.width, part.height) < margin) return {};  // most of it is outside
   const double scale = kClose / std::max(length_of(chart), 1.0);
   cv::Mat enlarged;
   cv::resize(pixels(part), enlarged, {}, scale, scale,
@@ -89,18 +118,42 @@ std::array<Eigen::Array3f, kPatches> chart_colors() {
   return colors;
 }
 
-std::vector<Chart> find_charts(const cv::Mat& pixels) {
-  constexpr int kMostCharts = 4;
-  constexpr double kLongestSide = 2000;
-  const double scale =
-      std::min(1.0, kLongestSide / static_cast<double>(std::max(pixels.cols, pixels.rows)));
+std::vector<Chart> find_charts(const cv::Mat3b& pixels) {
+  const double scale = reduction_of(pixels.size());
   cv::Mat reduced;
   cv::resize(pixels, reduced, {}, scale, scale, cv::INTER_AREA);
   std::vector<Chart> charts;
   for (const Chart& found : detect(reduced, kMostCharts))
     for (const Chart& chart : seen_closely(pixels, moved(found, 1 / scale, {})))
-      charts.push_back(chart);
+      if (std::ranges::none_of(charts, [&](const Chart& one) { return overlap(one, chart); }))
+        charts.push_back(chart);
   return charts;
+}
+
+std::uint64_t bytes_to_find_charts(cv::Size size) {
+  // Of a pixel of the enlarged picture: colours as bytes and as floats, grey, and nine pictures of
+  // thresholds.
+  constexpr double kEachPixel = 3 + 12 + 1 + 9;
+  const double width = size.width * reduction_of(size), height = size.height * reduction_of(size);
+  const double shorter = std::max(1.0, std::min(width, height));
+  const double scale = std::max(1.0, kDetectorSide / shorter);
+  return static_cast<std::uint64_t>(kEachPixel * scale * scale * width * height);
+}
+
+double likeness(const PatchLights& lights, const std::array<bool, 3>& known) {
+  const auto colors = chart_colors();
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k)
+    if (known[static_cast<std::size_t>(k)]) {
+      std::vector<double> light, color;
+      for (std::size_t i = 0; i < kPatches; ++i)
+        if (std::isfinite(lights[i][k])) {
+          light.push_back(static_cast<double>(lights[i][k]));
+          color.push_back(static_cast<double>(colors[i][k]));
+        }
+      least = std::min(least, light.size() < kPatches / 2 ? 0 : correlation(light, color));
+    }
+  return std::isfinite(least) ? least : 0;
 }
 
 std::vector<cv::Point> pixels_of_patch(const Chart& chart, std::size_t patch, cv::Size size) {
@@ -135,7 +188,7 @@ Eigen::Array3f gain_of(const PatchLights& lights) {
     for (std::size_t i = kFirst; i < kFirst + kGreys; ++i)
       if (lights[i][k] > 0) ratios.push_back(colors[i][k] / lights[i][k]);
     gain[k] = ratios.size() < 3 ? std::numeric_limits<float>::quiet_NaN()
-                                : upper_median(std::move(ratios));
+                                : static_cast<float>(mean_median(std::move(ratios)));
   }
   return gain;
 }
@@ -144,9 +197,10 @@ double chart_error(const PatchLights& lights, const Eigen::Array3f& gain) {
   const auto colors = chart_colors();
   std::vector<double> differences;
   for (std::size_t i = 0; i < kPatches; ++i)
-    if (lights[i].isFinite().all())
+    if (lights[i].isFinite().all() && gain.isFinite().all())
       differences.push_back(ciede2000(lab_of((lights[i] * gain).max(0.0f)), lab_of(colors[i])));
-  if (differences.size() < kPatches / 2) return std::numeric_limits<double>::quiet_NaN();
+  if (differences.size() < kPatches / 2 || !gain.isFinite().all())
+    return std::numeric_limits<double>::quiet_NaN();
   return upper_median(std::move(differences));
 }
 

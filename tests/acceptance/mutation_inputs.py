@@ -100,7 +100,7 @@ PROGRAMS = {program.name: program for program in (
             (*BOARDS[:1], "control.json", "plates.csv", "bars.txt"), may_name=("board",)),
     Program("RestoreColors", ("-i", "wet.mvs", "-m", "wet/mesh.ply", "--light", "sun", "--points", "1000", "-o", "out"),
             ("wet.mvs", "wet.housing.json", "wet.lenses.json", "wet/mesh.ply", "wet/water/0000.jpg"),
-            tuple(f"wet/water/000{i}.jpg" for i in range(1, 6))),
+            tuple(f"wet/water/000{i}.jpg" for i in range(1, 6)), kept_on_error=r"out/unfinished/.*"),
     Program("ReproducePaper", ("figure3", "--quick", "-o", "paper"),
             ("paper/quick/figure3.json", "ReproducePaper.cfg"), kept_on_error=r"paper/.*",
             may_name=("figure3",)),

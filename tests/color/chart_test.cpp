@@ -3,8 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-#include <random>
+#include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "color/difference.h"
 #include "color/transfer.h"
@@ -23,7 +24,7 @@ cv::Mat3f seabed(cv::Size size, unsigned seed) {
   return light;
 }
 
-cv::Mat values_of(const cv::Mat3f& light) {
+cv::Mat3b values_of(const cv::Mat3f& light) {
   cv::Mat3b values(light.size());
   const Transfer srgb;
   for (int y = 0; y < light.rows; ++y)
@@ -84,6 +85,42 @@ TEST(Chart, IsFoundTurnedTiltedAndSmall) {
   }
 }
 
+// Also in a photograph that is reduced while charts are looked for.
+TEST(Chart, SeveralAreFoundInALargePhotograph) {
+  cv::Mat3f light = seabed({3200, 1600}, 4);
+  const std::array<cv::Point2d, 2> middles{{{600, 500}, {2300, 900}}};
+  for (const cv::Point2d& middle : middles)
+    test::draw_chart(test::place_chart(middle, 500, 30, 0.05), light);
+  const std::vector<Chart> charts = find_charts(values_of(light));
+  ASSERT_EQ(charts.size(), 2U);
+  for (const cv::Point2d& middle : middles)
+    EXPECT_TRUE(std::ranges::any_of(charts, [&](const Chart& chart) {
+      const auto& [a, b, c, d] = chart.corners;
+      return cv::norm(cv::Point2d((a + b + c + d) / 4) - middle) < 20;  // of 500
+    }));
+}
+
+TEST(Chart, IsToldFromOtherPatches) {
+  const std::array<bool, 3> all{true, true, true};
+  PatchLights lights = chart_colors();
+  for (Eigen::Array3f& light : lights) light = light * Eigen::Array3f(0.2f, 3, 1) + 0.01f;
+  EXPECT_NEAR(likeness(lights, all), 1, 1e-5);
+  cv::RNG random(5);
+  for (int i = 0; i < 1000; ++i) {
+    for (Eigen::Array3f& light : lights)
+      light = {random.uniform(0.0f, 1.0f), random.uniform(0.0f, 1.0f), random.uniform(0.0f, 1.0f)};
+    EXPECT_LT(likeness(lights, all), kLeastLikeness);
+  }
+  // A channel that the water took.
+  lights = chart_colors();
+  for (std::size_t i = 0; i < kPatches; ++i) lights[i][0] = i % 2 ? 0.1f : 0.2f;
+  EXPECT_LT(likeness(lights, all), kLeastLikeness);
+  EXPECT_NEAR(likeness(lights, {false, true, true}), 1, 1e-5);
+  EXPECT_EQ(likeness(lights, {false, false, false}), 0);
+  for (std::size_t i = 0; i < 13; ++i) lights[i].setConstant(NAN);
+  EXPECT_EQ(likeness(lights, {false, true, true}), 0);
+}
+
 TEST(Chart, IsNotFoundWhereThereIsNone) {
   for (unsigned seed = 1; seed <= 3; ++seed)
     EXPECT_TRUE(find_charts(values_of(seabed({640, 480}, seed))).empty());
@@ -96,12 +133,13 @@ TEST(Chart, GivesTheGainOfEachChannel) {
   PatchLights lights = chart_colors();
   for (Eigen::Array3f& light : lights) light *= cast;
   lights[19].setConstant(9);  // a reflection
-  lights[20][1] = std::numeric_limits<float>::quiet_NaN();
+  lights[20][1] = NAN;
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(gain_of(lights)[k] * cast[k], 1, 1e-5);
   EXPECT_LT(chart_error(lights, gain_of(lights)), 1e-3);
   EXPECT_GT(chart_error(lights, Eigen::Array3f::Ones()), 10);
   for (std::size_t i = 18; i < 21; ++i) lights[i].setConstant(-1);
   EXPECT_TRUE(gain_of(lights).isNaN().all());
+  EXPECT_TRUE(std::isnan(chart_error(lights, gain_of(lights))));
 }
 
 }  // namespace

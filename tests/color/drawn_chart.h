@@ -2,6 +2,7 @@
 // A colour chart of 24 patches, drawn.
 #pragma once
 
+#include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 

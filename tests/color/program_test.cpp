@@ -22,6 +22,9 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
 
+// The model of RestoreColors: a, b and B of red, green and blue.
+constexpr const char* kPlainWater = "--water 0.9,0.5,0.3,0.8,0.4,0.3,0.05,0.15,0.2";
+
 class RestoreColors : public axial::test::ProgramTest {
  protected:
   // Photographs under water, and the scene with the true surface.
@@ -75,7 +78,7 @@ class RestoreColors : public axial::test::ProgramTest {
 };
 
 TEST_F(RestoreColors, FindsTheCoefficientsOfPlainWater) {
-  photograph("--water 0.9,0.5,0.3,0.8,0.4,0.3,0.05,0.15,0.2");
+  photograph(kPlainWater);
   restore("--masks 1");
   const nlohmann::json found = findings();
   EXPECT_EQ(found.at("light"), "sun");
@@ -119,16 +122,21 @@ TEST_F(RestoreColors, WritesTheSameBytesForAnyNumberOfThreads) {
 
 // A folder in place of a photograph stops the first run.
 TEST_F(RestoreColors, GoesOnWhereAStoppedRunEnded) {
-  photograph("--water 0.9,0.5,0.3,0.8,0.4,0.3,0.05,0.15,0.2");
+  photograph(kPlainWater);
   restore("--points 1000 --masks 1");
   fs::rename(folder_ / "restored", folder_ / "at_once");
-  const fs::path unfinished = folder_ / "restored.unfinished";
-  fs::create_directories(unfinished / "0005.jpg");
-  const std::string options =
-      "-i scene.mvs -m mesh.ply --refractive -o restored -v 0 --points 1000 --process-priority 0 ";
-  expect_refusal("RestoreColors", options + "--masks 1", "0005.jpg");
-  EXPECT_FALSE(fs::exists(folder_ / "restored"));
-  fs::remove_all(unfinished / "0005.jpg");
+  const fs::path unfinished = folder_ / "restored/unfinished";
+  const auto stop = [&](const std::string& options) {
+    fs::create_directories(unfinished / "0005.jpg");
+    expect_refusal("RestoreColors",
+                   "-i scene.mvs -m mesh.ply --refractive -o restored -v 0 --points 1000 "
+                   "--process-priority 0 " +
+                       options,
+                   "0005.jpg");
+    fs::remove_all(unfinished / "0005.jpg");
+  };
+  stop("--masks 1");
+  EXPECT_FALSE(fs::exists(folder_ / "restored/0000.jpg"));
   EXPECT_THAT(restore("--points 1000 --masks 1"),
               HasSubstr("5 photographs were restored by an earlier run"));
   EXPECT_FALSE(fs::exists(unfinished));
@@ -136,14 +144,41 @@ TEST_F(RestoreColors, GoesOnWhereAStoppedRunEnded) {
     EXPECT_EQ(read_file(folder_ / "at_once" / name), read_file(folder_ / "restored" / name))
         << name;
 
-  fs::create_directories(unfinished / "0005.jpg");
-  expect_refusal("RestoreColors", options, "0005.jpg");
-  fs::remove_all(unfinished / "0005.jpg");
+  stop("--masks 1");
+  write_atomically(unfinished / "note.txt", "not of the program");
   EXPECT_THAT(restore("--points 1000 --jpeg-quality 90"), Not(HasSubstr("by an earlier run")));
+  EXPECT_FALSE(fs::exists(unfinished / "masks"));
+  EXPECT_TRUE(fs::exists(unfinished / "note.txt"));
+}
+
+// The names of two photographs are exchanged after the first run was stopped.
+TEST_F(RestoreColors, TakesNoPhotographOfAnotherView) {
+  photograph(kPlainWater);
+  fs::create_directories(folder_ / "restored/unfinished/0005.jpg");
+  expect_refusal("RestoreColors",
+                 "-i scene.mvs -m mesh.ply --refractive -o restored -v 0 --points 1000",
+                 "0005.jpg");
+  fs::remove_all(folder_ / "restored/unfinished/0005.jpg");
+  for (const char* file : {"sparse/images.txt"}) {
+    std::string text = read_file(folder_ / file);
+    const std::size_t first = text.find("0001.jpg"), second = text.find("0002.jpg");
+    ASSERT_NE(first, std::string::npos);
+    text.replace(first, 8, "0002.jpg").replace(second, 8, "0001.jpg");
+    write_atomically(folder_ / file, text);
+  }
+  fs::rename(folder_ / "water/0001.jpg", folder_ / "water/0009.jpg");
+  fs::rename(folder_ / "water/0002.jpg", folder_ / "water/0001.jpg");
+  fs::rename(folder_ / "water/0009.jpg", folder_ / "water/0002.jpg");
+  succeed_in("InterfaceCOLMAP", "-i . --image-folder water --housing housing.json -o scene.mvs");
+  restore("--points 1000");
+  fs::rename(folder_ / "restored", folder_ / "after");
+  restore("--points 1000");
+  for (const char* name : {"0000.jpg", "0001.jpg", "0002.jpg", "0007.jpg"})
+    EXPECT_EQ(read_file(folder_ / "after" / name), read_file(folder_ / "restored" / name)) << name;
 }
 
 TEST_F(RestoreColors, MakesTheGreyPatchGrey) {
-  photograph("--water 0.9,0.5,0.3,0.8,0.4,0.3,0.05,0.15,0.2");
+  photograph(kPlainWater);
   restore("--grey 0003.jpg:150,110,24,24");
   const cv::Mat pixels = io::read_photograph(folder_ / "restored/0003.jpg").pixels;
   const cv::Scalar light = cv::mean(light_of(pixels, 8, {})(cv::Rect(150, 110, 24, 24)));
@@ -152,19 +187,18 @@ TEST_F(RestoreColors, MakesTheGreyPatchGrey) {
   EXPECT_EQ(findings().at("white"), "grey patch");
 }
 
-// A chart in one photograph, behind the water of the simulator, with a camera that sees too much
-// red.
-TEST_F(RestoreColors, TakesWhiteFromAColourChart) {
-  photograph("--water 0.9,0.5,0.3,0.8,0.4,0.3,0.05,0.15,0.2");
-  const fs::path file = folder_ / "water" / "0003.jpg";
+// Draws a chart into a photograph, behind kPlainWater. `cast`: its light in white light, as a share
+// of that of a chart. Returns where it is.
+cv::Matx33d draw_chart_behind_water(const fs::path& folder, const std::string& name,
+                                    const Eigen::Array3f& cast) {
   const cv::Mat1f way =
-      cv::imread((folder_ / "water/0003.distance.tiff").string(), cv::IMREAD_UNCHANGED);
+      cv::imread((folder / (name + ".distance.tiff")).string(), cv::IMREAD_UNCHANGED);
   cv::Mat3f chart(way.size(), cv::Vec3f(-1, -1, -1));
   const cv::Matx33d map = test::place_chart({160, 120}, 200, 15, 0.05);
   test::draw_chart(map, chart);
+  const fs::path file = folder / (name + ".jpg");
   cv::Mat pixels = io::read_photograph(file).pixels;
   const Eigen::Array3f a(0.9f, 0.5f, 0.3f), b(0.8f, 0.4f, 0.3f), veil(0.05f, 0.15f, 0.2f);
-  const Eigen::Array3f cast(0.9f, 0.6f, 0.5f);
   for (int y = 0; y < way.rows; ++y)
     for (int x = 0; x < way.cols; ++x) {
       const cv::Vec3f& albedo = chart(y, x);
@@ -177,25 +211,44 @@ TEST_F(RestoreColors, TakesWhiteFromAColourChart) {
             cv::saturate_cast<uchar>(255 * Transfer().value(light[k]));
     }
   io::write_jpeg(file, pixels, 98);
-  restore("--chart 0003.jpg --jpeg-quality 98");
-  EXPECT_EQ(findings().at("white"), "charts");
-  ASSERT_EQ(findings().at("charts").size(), 1U);
-  EXPECT_EQ(findings().at("charts")[0].at("photograph"), "0003.jpg");
-  // The same patches with their white, but with the water.
-  const cv::Mat3f under_water = light_of(pixels, 8, {});
+  return map;
+}
+
+// CIEDE2000 of a chart with its own white, as it is in the photograph.
+double chart_error_in(const fs::path& photograph, const cv::Matx33d& map) {
+  const cv::Mat3f seen = light_of(io::read_photograph(photograph).pixels, 8, {});
   PatchLights lights;
   for (std::size_t i = 0; i < kPatches; ++i) {
-    const cv::Vec3f seen = under_water(cv::Point(test::mapped(map, test::middle_of_patch(i))));
-    lights[i] = {seen[0], seen[1], seen[2]};
+    const cv::Vec3f light = seen(cv::Point(test::mapped(map, test::middle_of_patch(i))));
+    lights[i] = {light[0], light[1], light[2]};
   }
-  EXPECT_LT(findings().at("charts")[0].at("ciede2000"), 0.5 * chart_error(lights, gain_of(lights)));
+  return chart_error(lights, gain_of(lights));
+}
+
+TEST_F(RestoreColors, TakesWhiteFromAColourChart) {
+  photograph(kPlainWater);
+  const Eigen::Array3f cast(0.9f, 0.6f, 0.5f);
+  const cv::Matx33d map = draw_chart_behind_water(folder_ / "water", "0003", cast);
+  restore("--light sun --chart 0003.jpg --jpeg-quality 98");
+  EXPECT_EQ(findings().at("white"), "charts");
+  const nlohmann::json charts = findings().at("charts");
+  ASSERT_EQ(charts.size(), 1U);
+  EXPECT_EQ(charts[0].at("photograph"), "0003.jpg");
+  EXPECT_LT(charts[0].at("ciede2000"), 0.5 * chart_error_in(folder_ / "water/0003.jpg", map));
   const cv::Mat3f restored =
       light_of(io::read_photograph(folder_ / "restored/0003.jpg").pixels, 8, {});
-  const cv::Point grey = test::mapped(map, test::middle_of_patch(20));
+  const cv::Point grey(test::mapped(map, test::middle_of_patch(20)));
+  // The gain is the median of five grey patches, which differ by the errors of the veil: 0.02 of
+  // the light of 0.36 of this patch. Values of 8 bits and JPEG add 0.02.
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(restored(grey)[k] / chart_colors()[20][k], 1, 0.1) << k;
   expect_refusal("RestoreColors",
                  "-i scene.mvs -m mesh.ply --refractive -v 0 -o other --chart 0001.jpg",
                  "no chart of 24 patches was found in this photograph");
+
+  draw_chart_behind_water(folder_ / "water", "0005", cast / 2);  // in a shadow
+  EXPECT_THAT(restore("--light sun --chart all"),
+              HasSubstr("the chart in 0005.jpg gives a white that differs"));
+  EXPECT_EQ(findings().at("charts").size(), 2U);
 }
 
 // With heights, the surface becomes as bright as if it was level; a known type is used.
