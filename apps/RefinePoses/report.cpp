@@ -233,7 +233,7 @@ std::string depth_line(const pose::Uncertainty& known) {
 }
 
 std::optional<std::string> depth_warning(const pose::Uncertainty& known) {
-  constexpr double kLargest = 0.005;
+  constexpr double kLargest = 0.003;  // three of them: 1 % of the distance
   if (known.depth_sigma <= kLargest) return {};
   return depth_line(known) +
          ": calibrate the lens in air and the port with CalibrateHousing, or take photographs at "

@@ -64,7 +64,7 @@ std::string shape_line(const pose::Uncertainty& known);
 // length of the survey.
 std::optional<std::string> shape_warning(const Results& results, const pose::Uncertainty& known);
 
-// Returns the line for the log about Uncertainty::depth_sigma, and a warning if it is above 0.5 %.
+// Returns the line for the log about Uncertainty::depth_sigma, and a warning if it is above 0.3 %.
 std::string depth_line(const pose::Uncertainty& known);
 std::optional<std::string> depth_warning(const pose::Uncertainty& known);
 

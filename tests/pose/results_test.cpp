@@ -149,9 +149,11 @@ TEST_F(WriteResults, WarnsOfAWeakShape) {
 
 TEST_F(WriteResults, WarnsOfUncertainDepths) {
   Uncertainty uncertain = known();
-  uncertain.depth_sigma = 0.004;
+  uncertain.depth_sigma = 0.0029;
   EXPECT_FALSE(apps::depth_warning(uncertain));
-  EXPECT_THAT(apps::depth_line(uncertain), HasSubstr("known to 0.4 %"));
+  EXPECT_THAT(apps::depth_line(uncertain), HasSubstr("known to 0.29 %"));
+  uncertain.depth_sigma = 0.0034;
+  EXPECT_THAT(apps::depth_warning(uncertain).value(), HasSubstr("known to 0.34 %"));
   uncertain.depth_sigma = 0.02;
   EXPECT_THAT(apps::depth_warning(uncertain).value(), HasSubstr("known to 2 %"));
   uncertain.depth_sigma = std::numeric_limits<double>::infinity();
