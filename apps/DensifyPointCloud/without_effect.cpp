@@ -11,23 +11,24 @@ namespace {
 
 using Names = std::initializer_list<const char*>;
 
-constexpr Names kMatching{"sub-resolution-levels", "iters",      "geometric-iters",
-                          "postprocess-dmaps",     "projection", "warp",
-                          "overwrite-dmaps"};
+constexpr Names kMatching{"sub-resolution-levels", "iters",         "geometric-iters",
+                          "postprocess-dmaps",     "projection",    "warp",
+                          "overwrite-dmaps",       "match-restored"};
 constexpr Names kMapSize{"resolution-level", "max-resolution", "min-resolution", "number-views"};
-constexpr Names kFusion{"number-views-fuse",
-                        "estimate-colors",
-                        "estimate-normals",
-                        "estimate-uncertainty",
-                        "crop-to-roi",
-                        "remove-dmaps",
-                        "colors"};
+constexpr Names kFusion{"number-views-fuse",    "estimate-colors", "estimate-normals",
+                        "estimate-uncertainty", "crop-to-roi",     "remove-dmaps"};
 constexpr Names kImages{"resolution-level", "max-resolution",     "min-resolution", "number-views",
                         "mask-path",        "ignore-mask-label",  "bit-depth",      "estimate-roi",
                         "roi-border",       "view-neighbors-file"};
 
 void warn_of(const Options& options, Names names, const std::string& cause) {
   warn_without_effect(options.parsed, names, cause);
+}
+
+// The options of fusion, and those of colours that are not matched either.
+void warn_of_fusion(const Options& options, const std::string& cause) {
+  warn_of(options, kFusion, cause);
+  if (!options.settings.survey.match_colors) warn_of(options, {"colors"}, cause);
 }
 
 // If several exports are asked for, the first one is made.
@@ -42,7 +43,8 @@ void warn_of_options_an_export_ignores(const Options& options, const densify::Ex
   if (made == "filter-point-cloud")
     warn_of(options, {"export-number-views", "estimate-scale"}, with);
   if (made == "export-number-views") warn_of(options, {"estimate-scale"}, with);
-  for (const Names& names : {kMatching, kFusion, kImages}) warn_of(options, names, with);
+  for (const Names& names : {kMatching, kFusion, kImages, Names{"colors"}})
+    warn_of(options, names, with);
   warn_of(options, {"fusion-mode", "output-view-neighbors-file"}, with);
 }
 
@@ -55,13 +57,13 @@ void warn_of_options_without_effect(const Options& options) {
   if (const auto* job = settings.job_as<densify::ExportJob>())
     return warn_of_options_an_export_ignores(options, *job);
   if (settings.job_as<densify::NeighbourListsJob>()) {
-    for (const Names& names : {kMatching, kFusion})
+    for (const Names& names : {kMatching, kFusion, Names{"colors"}})
       warn_of(options, names, "with --output-view-neighbors-file, which matches no images");
     return;
   }
   if (const auto* job = settings.job_as<densify::StageJob>()) {
     if (job->parts > 0) warn_of(options, {"report-file"}, "with --part, which checks nothing");
-    warn_of(options, kFusion, "with --until, which makes no cloud");
+    warn_of_fusion(options, "with --until, which makes no cloud");
     warn_of(options, {"tiles"}, "with --until, which makes no cloud");
   }
   if (settings.job_as<densify::PlanJob>())
@@ -74,8 +76,8 @@ void warn_of_options_without_effect(const Options& options) {
   if (settings.job_as<densify::TileJob>())
     warn_of(options, {"remove-dmaps", "report-file"}, "with --tile, which makes no whole cloud");
   if (!settings.fusion.fuse)
-    warn_of(options, kFusion, "with --fusion-mode 1, which makes only depth maps");
-  else if (!settings.fusion.needs_colors())
+    warn_of_fusion(options, "with --fusion-mode 1, which makes only depth maps");
+  else if (!settings.fusion.needs_colors() && !settings.survey.match_colors)
     warn_of(options, {"colors"}, "with --estimate-colors 0");
 }
 

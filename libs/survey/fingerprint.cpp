@@ -45,9 +45,11 @@ void add_camera(Fingerprint& print, const CameraModel& camera) {
   std::visit([&](const auto& port) { add_port(print, port); }, *camera.port);
 }
 
-std::vector<fs::path> files_of(const View& view) {
+// The files whose pixels are matched or mask others.
+std::vector<fs::path> files_of(const View& view, const Options& options) {
   std::vector<fs::path> files{view.file};
   if (!view.mask.empty()) files.push_back(view.mask);
+  if (options.match_colors) files.push_back(view.colors);
   return files;
 }
 
@@ -57,9 +59,10 @@ std::string content_of(const std::vector<fs::path>& files) {
   return print.hex();
 }
 
-std::string content_of(const MemorySurvey& survey, std::size_t image) {
-  const io::Photograph photograph = photograph_of(survey, image);
+std::string content_of(const MemorySurvey& survey, const View& view, const Options& options) {
+  const io::Photograph photograph = photograph_of(survey, view.image);
   Fingerprint print;
+  if (options.match_colors) print.add(read_file(view.colors));
   add_pixels(print, photograph.pixels);
   add_pixels(print, photograph.opaque);
   return print.hex();
@@ -101,9 +104,9 @@ std::vector<std::string> contents_of_views(const Survey& survey, const KeptConte
   parallel_for(prints.size(), [&](std::size_t v) {
     const View& view = survey.views[v];
     if (const auto& memory = survey.options.memory_survey; memory && !view.file.empty()) {
-      prints[v] = content_of(*memory, view.image);
+      prints[v] = content_of(*memory, view, survey.options);
     } else if (!view.file.empty()) {
-      const std::vector<fs::path> files = files_of(view);
+      const std::vector<fs::path> files = files_of(view, survey.options);
       states[v] = kept.read ? state_of(files) : std::string();
       prints[v] = kept_or_read(old, states[v], files);
     }

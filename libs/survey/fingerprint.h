@@ -25,9 +25,9 @@ struct KeptContents {
 void add_pixels(Fingerprint& print, const cv::Mat& pixels);
 
 // Returns, for each view, a fingerprint of the bytes of its photograph and of its mask (of a survey
-// in memory: of their pixels); empty for a view without a file. Reads the photographs and masks
-// whose fingerprints are not kept. Error for a photograph or mask that cannot be read, and if the
-// file of `kept` cannot be written.
+// in memory: of their pixels), and with Options::match_colors of its file of colours; empty for a
+// view without a file. Reads the photographs and masks whose fingerprints are not kept. Error for a
+// photograph or mask that cannot be read, and if the file of `kept` cannot be written.
 std::vector<std::string> contents_of_views(const Survey& survey, const KeptContents& kept = {},
                                            const Context& context = {});
 

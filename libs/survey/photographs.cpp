@@ -69,13 +69,21 @@ Photographs::Photographs(const Survey& survey)
     : survey_(survey), labels_(survey.options.ignore_mask_label) {}
 
 bool Photographs::needs_photograph(const View& view, Channels channels) const {
-  return view.colors.empty() || channels != Channels::color || view.header.alpha ||
+  const bool gives_grey = channels != Channels::color && !survey_.options.match_colors;
+  return view.colors.empty() || gives_grey || view.header.alpha ||
          survey_.options.ignore_black_border;
+}
+
+bool Photographs::needs_colors(const View& view, Channels channels) const {
+  return !view.colors.empty() && (channels != Channels::grey || survey_.options.match_colors);
 }
 
 Pixels Photographs::read(std::size_t view, Channels channels) const {
   const View& from = survey_.views[view];
   const Options& options = survey_.options;
+  const auto set_grey = [&](Pixels& pixels) {
+    if (channels != Channels::color) cv::cvtColor(pixels.color, pixels.grey, cv::COLOR_BGR2GRAY);
+  };
   Pixels result;
   cv::Mat1b opaque, inside;
   if (needs_photograph(from, channels)) {
@@ -84,12 +92,14 @@ Pixels Photographs::read(std::size_t view, Channels channels) const {
                                     : io::read_photograph(from.file);
     opaque = photograph.opaque;
     result.color = at_working_size(std::move(photograph.pixels), survey_.bit_depth, from);
-    if (channels != Channels::color) cv::cvtColor(result.color, result.grey, cv::COLOR_BGR2GRAY);
+    set_grey(result);
     if (options.ignore_black_border) inside = outside_black_border(result.color);
   }
-  if (channels == Channels::grey || !from.colors.empty()) result.color.release();
-  if (channels != Channels::grey && !from.colors.empty())
+  if (needs_colors(from, channels)) {
     result.color = at_working_size(io::read_photograph(from.colors).pixels, kBitsOfColors, from);
+    if (options.match_colors) set_grey(result);
+  }
+  if (channels == Channels::grey) result.color.release();
   if (survey_.photograph_check && channels == Channels::color)
     survey_.photograph_check->take(from.image, result.color);
   else if (survey_.photograph_check)

@@ -10,8 +10,8 @@
 
 namespace axial::survey {
 
-// The pixels of a photograph, of the size of View::camera. `grey` is that of the photograph, and
-// `color` that of View::colors if the view has such a file.
+// The pixels of a photograph, of the size of View::camera. `color` is that of View::colors if the
+// view has such a file, and so is `grey` with Options::match_colors.
 struct Pixels {
   cv::Mat1b grey;   // empty unless asked for
   cv::Mat3b color;  // B G R; empty unless asked for
@@ -56,8 +56,9 @@ class Photographs {
   void report(const Context& context) const;
 
  private:
-  // Whether read() decodes the photograph itself.
+  // Whether read() decodes the photograph itself, and View::colors.
   bool needs_photograph(const View& view, Channels channels) const;
+  bool needs_colors(const View& view, Channels channels) const;
 
   const Survey& survey_;
   mutable LabelCheck labels_;

@@ -28,6 +28,9 @@ class Pixels(TinyScene):
     def depths(self, files, *more):
         self.put(files)
         self.said = self.succeeds(*self.arguments(*more)).stdout
+        return self.read_depths()
+
+    def read_depths(self):
         return [Dmap(self.at(f"depth{i:04}.dmap")).rows for i in range(3)]
 
     def test_twelve_bits_in_sixteen_are_as_good_as_eight(self):
@@ -68,6 +71,13 @@ class Pixels(TinyScene):
         self.assertEqual(Ply(self.at("restored_cloud.ply")).points, points)
         self.assertEqual({color[1:] for color in self.colors("restored_cloud.ply")}, {(0, 0)})
         self.assertGreater(len({color[1:] for color in self.colors("scene_dense.ply")}), 50)
+
+    def test_restored_photographs_can_be_matched(self):
+        self.put_restored()
+        plain = self.depths(self.stored)
+        self.refuses("--match-restored needs --colors", *self.densify("--match-restored", "1"))
+        self.succeeds(*self.densify("--colors", "restored", "--match-restored", "1"))
+        self.assertNotEqual(self.read_depths(), plain)
 
     def test_other_colours_make_a_tile_again(self):
         self.put_restored()

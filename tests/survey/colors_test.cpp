@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "support/error_of.h"
+#include "survey/fingerprint.h"
 #include "survey/photographs.h"
 #include "survey/small_survey.h"
 
@@ -48,6 +49,22 @@ TEST_F(ColorsTest, ThePhotographGivesGreyAndTheFolderColor) {
   EXPECT_EQ(both.color(3, 4), kRestored);
   EXPECT_EQ(both.grey(3, 4), 66);  // of 30 60 90
   EXPECT_TRUE(Photographs(survey).read(1, Channels::grey).color.empty());
+}
+
+TEST_F(ColorsTest, TheFolderGivesTheGreyThatIsMatched) {
+  const std::string before = fingerprint_of_views(opened());
+  options_.match_colors = true;
+  Survey survey = opened();
+  EXPECT_NE(fingerprint_of_views(survey), before);
+  const Pixels both = Photographs(survey).read(1, Channels::both);
+  EXPECT_EQ(both.color(3, 4), kRestored);
+  EXPECT_EQ(both.grey(3, 4), 140);  // 0.114 * 10 + 0.587 * 120 + 0.299 * 230
+  const Pixels grey = Photographs(survey).read(1, Channels::grey);
+  EXPECT_EQ(grey.grey(3, 4), 140);
+  EXPECT_TRUE(grey.color.empty());
+  // The photograph itself is not read.
+  fs::resize_file(folder_ / "image2.png", fs::file_size(folder_ / "image2.png") / 2);
+  EXPECT_EQ(Photographs(survey).read(1, Channels::grey).grey(3, 4), 140);
 }
 
 TEST_F(ColorsTest, TheLongestEndOfThePathCounts) {

@@ -48,9 +48,10 @@ struct Options {
   int ignore_mask_label = -1;  // value of mask pixels to leave out; below 0: no masks are used
   bool ignore_black_border = false;  // leave out the black borders that undistortion leaves
   // Folder with the colours of every image that is used: pictures of the size of the photographs,
-  // as RestoreColors writes them. Empty: the photographs have the colours. Matching, transparency
-  // and black borders are always those of the photographs.
+  // as RestoreColors writes them. Empty: the photographs have the colours. Transparency and black
+  // borders are always those of the photographs.
   std::filesystem::path color_folder;
+  bool match_colors = false;  // grey levels, for matching, come from color_folder, too
   // The number of bits that the values of 16-bit photographs use: 8 to 16. 0: as many as the
   // largest value in all photographs needs.
   int bit_depth = 0;
