@@ -217,6 +217,29 @@ class WithStandIns(StandIns):
         for name in ("restored-cloud", "texture", "map", "raw-map"):
             self.assertIn(masks, masked[name])
 
+    def test_photographs_without_water_are_matched_again(self):
+        for words, expected in ((["--match-restored"], "is only for --restore-colors"),
+                                (["--restore-colors", "--match-restored", "--cluster", "local"], "--cluster")):
+            self.assertIn(expected, self.refused(*words))
+        every = {step.name: " ".join(step.command) for step in reconstruct_steps.steps(options_of(
+            restore_colors=True, match_restored=True, until="page", densify="--remove-dmaps 1"), self.folder / "out")}
+        self.assertEqual(list(every)[7:], ["mesh", "refine-mesh", "colors", "restored-cloud", "restored-mesh",
+                                           "restored-refine-mesh", "texture", "map", "raw-map", "page"])
+        out = self.folder / "out"
+        self.assertIn(f"-m {out}/scene_dense_refined.ply", every["colors"])
+        self.assertIn(f"-w {out}/rematched ", every["restored-cloud"])
+        self.assertIn(f"--colors {out}/restored --match-restored 1 -o {out}/scene_restored.mvs",
+                      every["restored-cloud"])
+        self.assertIn(f"-i {out}/scene_restored.mvs -o {out}/scene_restored_mesh.ply", every["restored-mesh"])
+        self.assertIn(f"-m {out}/scene_restored_mesh.ply -o {out}/scene_restored_refined.ply",
+                      every["restored-refine-mesh"])
+        for name in ("texture", "raw-map"):
+            self.assertIn(f"-m {out}/scene_restored_refined.ply", every[name])
+        names = [step.name for step in reconstruct_steps.steps(options_of(
+            restore_colors=True, match_restored=True, until="texture", without="refine-mesh"), out)]
+        self.assertNotIn("restored-refine-mesh", names)
+        self.assertIn("restored-mesh", names)
+
     def test_an_earlier_survey_is_compared(self):
         self.write("before/scene_dense_mesh.ply", "")
         said = self.succeeds("--earlier", "before", "--without", "refine-mesh,texture,map,page")

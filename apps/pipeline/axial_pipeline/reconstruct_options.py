@@ -13,7 +13,7 @@ from .failure import Failure
 from .option_files import find_option, has_option
 from .ownership import is_record
 from .programs import NAMES, Programs, default_folder, require, words_of
-from .step_kinds import KINDS, OF_RESTORING, OPTIONS, ORDER, RESULTS
+from .step_kinds import KINDS, OF_REMATCHING, OF_RESTORING, OPTIONS, ORDER, RESULTS
 from .steps import record_file
 
 SKIPPED = [name for name, kind in KINDS.items() if kind.can_be_left_out]
@@ -61,6 +61,8 @@ def options(script_folder, description, words=None):
     parser.add_argument("--keep-all", action="store_true", help="use blurred, dark and doubled photographs, too")
     parser.add_argument("--restore-colors", action="store_true", help="give cloud, textures, maps and page the colours "
                         "that the photographs have without water (docs/colors.md)")
+    parser.add_argument("--match-restored", action="store_true", help="with --restore-colors: match the photographs "
+                        "without water again, and make the final cloud and mesh from them, for hazy water")
     for name, program in OPTIONS.items():
         parser.add_argument(f"--{name}", default="",
                             help=f"more options for {program}, in one word" +
@@ -131,19 +133,26 @@ def keeps_depth_maps(given):
 
 def is_of_restoring(name, given, left_out):
     """Whether the step `name` of --restore-colors runs."""
-    return (given.restore_colors and (name != "restored-cloud" or keeps_depth_maps(given))
+    return (given.restore_colors
+            and (name != "restored-cloud" or keeps_depth_maps(given) or given.match_restored)
+            and (name not in OF_REMATCHING or given.match_restored)
+            and (name != "restored-refine-mesh" or "refine-mesh" not in left_out)
             and (name != "raw-map" or "map" not in left_out))
 
 
 def check_restoring(given):
     if given.colors and not given.restore_colors:
         raise Failure(f"--colors {given.colors}: is only for --restore-colors")
+    if given.match_restored and not given.restore_colors:
+        raise Failure("--match-restored: is only for --restore-colors")
     if not given.restore_colors:
         return
+    if given.match_restored and given.cluster:
+        raise Failure("--match-restored: contradicts --cluster")
     if RESULTS.index(given.until) < RESULTS.index(KINDS["colors"].result):
         raise Failure("--restore-colors: is for textures, maps and the page, which --until "
                       f"{given.until} does not make")
-    if not keeps_depth_maps(given):
+    if not keeps_depth_maps(given) and not given.match_restored:
         print(f"--densify {given.densify}: without depth maps, the cloud keeps the colours of the photographs",
               flush=True)
 

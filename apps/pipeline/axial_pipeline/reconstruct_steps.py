@@ -15,6 +15,7 @@ from .steps import Files, Report, Step, Tiles
 
 RUN_FILE = "run.json"
 RESTORED = "restored"  # the folder of the photographs without water
+REMATCHED = "rematched"  # the folder of their depth maps
 REFRACTIVE = ("--refractive", 1)
 
 
@@ -23,8 +24,20 @@ def meshes(out):
     return (out / "scene_dense_mesh.ply", out / "scene_dense_refined.ply", out / "scene_textured")
 
 
-def best_mesh(given, out):
+def first_mesh(given, out):
+    """The mesh before --match-restored."""
     return meshes(out)["refine-mesh" in wanted_steps(given)]
+
+
+def restored_meshes(out):
+    """The files of the mesh and of the refined mesh of --match-restored."""
+    return out / "scene_restored_mesh.ply", out / "scene_restored_refined.ply"
+
+
+def best_mesh(given, out):
+    wanted = wanted_steps(given)
+    return (restored_meshes(out)["restored-refine-mesh" in wanted] if "restored-mesh" in wanted
+            else first_mesh(given, out))
 
 
 class Run:
@@ -171,16 +184,31 @@ def color_steps(run, wanted):
     """The photographs without water, and a cloud that has their colours."""
     out = run.out
     if "colors" in wanted:
-        command = run.programs.restore_colors(run.scene, best_mesh(run.given, out), out / RESTORED, *REFRACTIVE,
+        command = run.programs.restore_colors(run.scene, first_mesh(run.given, out), out / RESTORED, *REFRACTIVE,
                                               *run.words("colors"))
         yield run.step("colors", command, Report(out / RESTORED / "colors.json"), anew=[out / RESTORED])
     if "restored-cloud" in wanted:
-        # The same command as that of the step "densify", so that it takes the depth maps of this step.
+        # The same command as that of the step "densify", so that it takes the depth maps of this step. Other depth
+        # maps lie in a folder of their own.
         words = without_options(run.words("densify"), ["--pinhole-export", "--report-file"])
-        command = run.programs.densify(out / "scene.mvs", out, *REFRACTIVE, *run.tiles(), *words,
-                                       *colors(run, wanted, words), "-o", out / "scene_restored.mvs")
+        folder, match = (out / REMATCHED, ["--match-restored", "1"]) if run.given.match_restored else (out, [])
+        command = run.programs.densify(out / "scene.mvs", folder, *REFRACTIVE, *run.tiles(), *words,
+                                       *colors(run, wanted, words), *match, "-o", out / "scene_restored.mvs")
         yield run.step("restored-cloud", command, out / "scene_restored.ply",
-                       also=read_by(command, run.own("densify")))
+                       also=read_by(command, run.own("densify")), before=lambda: folder.mkdir(exist_ok=True),
+                       changed=[folder] if match else [])
+    yield from rematched_mesh_steps(run, wanted)
+
+
+def rematched_mesh_steps(run, wanted):
+    """The mesh of the cloud of --match-restored."""
+    scene, (mesh, refined) = run.out / "scene_restored.mvs", restored_meshes(run.out)
+    if "restored-mesh" in wanted:
+        command = run.programs.reconstruct_mesh(scene, mesh, *REFRACTIVE, *run.tiles(), *run.words("mesh"))
+        yield run.step("restored-mesh", command, mesh, also=read_by(command, run.own("mesh")))
+    if "restored-refine-mesh" in wanted:
+        command = run.programs.refine_mesh(scene, mesh, refined, *REFRACTIVE, *run.words("refine-mesh"))
+        yield run.step("restored-refine-mesh", command, refined, also=read_by(command, run.own("refine-mesh")))
 
 
 def mesh_steps(run, wanted):
@@ -243,11 +271,12 @@ def words_about_surveys(words, known, earlier, scene):
 def words_about_results(run, wanted):
     """The options of ViewScene for the results of earlier steps, except those that the user gave."""
     out, kept_maps = run.out, keeps_depth_maps(run.given)
+    maps = out / REMATCHED if run.given.match_restored else out
     return not_given_again([("--run", out / RUN_FILE), ("--sfm-model", run.refined),
                             *([("--truth", run.given.truth)] if run.given.truth else []),
                             *([("--map", out / "scene_map")] if "map" in wanted else []),
                             *([("--change", out / "scene")] if "compare" in wanted else []),
-                            *([("--depth-maps", out)] if kept_maps else []),
+                            *([("--depth-maps", maps)] if kept_maps else []),
                             *([("--colors", out / RESTORED)] if "colors" in wanted else [])], run.own("page"))
 
 

@@ -55,7 +55,9 @@ KINDS = {
                         takes_masks=True, has_limits=True),
     "colors": Kind(["restored"], (8000, 4, 60, 0.2), "RestoreColors", result="texture", takes_masks=True,
                    has_limits=True),
-    "restored-cloud": Kind(["scene_restored.*"], (4000, 0, 60, 0.2), result="texture", has_limits=True),
+    "restored-cloud": Kind(["scene_restored.*", "rematched"], (4000, 0, 60, 0.2), result="texture", has_limits=True),
+    "restored-mesh": Kind(["scene_restored_mesh.*"], (8000, 4, 60, 0.5), result="texture", has_limits=True),
+    "restored-refine-mesh": Kind(["scene_restored_refined.*"], (8000, 4, 60, 1), result="texture", has_limits=True),
     "texture": Kind([f"scene_textured{tile}{end}" for tile in ("", TILE) for end in TEXTURED], (8000, 4, 60, 0.5),
                     "TextureMesh", result="texture", can_be_left_out=True, takes_masks=True, has_limits=True),
     "map": Kind([f"scene_map.{kind}" for kind in MAPS], (8000, 4, 60, 0.5), "MapSurface", result="map",
@@ -69,7 +71,9 @@ KINDS = {
     "evaluate": Kind(["evaluation.json"], (8000, 0, 60, 0))}
 ORDER = list(KINDS)
 NEEDS_OF_PLAN = (2000, 2, 30, 0.02)  # as needs, of the job "plan"
-OF_RESTORING = ("colors", "restored-cloud", "raw-map")  # steps of --restore-colors
+# Steps of --restore-colors, and those of them that only --match-restored has.
+OF_RESTORING = ("colors", "restored-cloud", "restored-mesh", "restored-refine-mesh", "raw-map")
+OF_REMATCHING = ("restored-mesh", "restored-refine-mesh")
 # The options whose words are options for a program, and this program.
 OPTIONS = {kind.option or name: kind.program for name, kind in KINDS.items() if kind.program}
 RESULTS = ("poses", *dict.fromkeys(kind.result for kind in KINDS.values() if kind.result))  # of --until
