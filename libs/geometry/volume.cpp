@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "geometry/convex_part.h"
 #include "geometry/faces.h"
 #include "geometry/sampling.h"
 #include "scene/decompositions.h"
@@ -95,19 +96,6 @@ double six_volumes(const Plane& plane, const Eigen::Vector3d& a, const Eigen::Ve
   return area2 * (plane.height_of(a) + plane.height_of(b) + plane.height_of(c));
 }
 
-// The part of a triangle above the plane: up to four corners.
-Points part_above(const Plane& plane, const std::array<Eigen::Vector3d, 3>& corners) {
-  Points part;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Eigen::Vector3d &a = corners[k], &b = corners[(k + 1) % 3];
-    const double at_a = plane.height_of(a), at_b = plane.height_of(b);
-    if (at_a >= 0) part.push_back(a);
-    if ((at_a > 0 && at_b < 0) || (at_a < 0 && at_b > 0))
-      part.push_back(a + at_a / (at_a - at_b) * (b - a));
-  }
-  return part;
-}
-
 }  // namespace
 
 Plane ground_plane(const Mesh& mesh, const Eigen::Vector3d& above, const GroundOptions& options) {
@@ -129,8 +117,10 @@ Plane ground_plane(const Mesh& mesh, const Eigen::Vector3d& above, const GroundO
 
 double volume_above(const Mesh& mesh, const Plane& plane) {
   double sum = 0;
+  Points part;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const Points part = part_above(plane, corners_of(mesh, f));
+    convex_part(
+        corners_of(mesh, f), [&](const auto& x) { return plane.height_of(x); }, part);
     for (std::size_t k = 2; k < part.size(); ++k)
       sum += six_volumes(plane, part[0], part[k - 1], part[k]);
   }

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Polygons with holes and several parts, and the parts of triangles above or below them.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace axial::geometry {
+
+// A closed line in the plane z = 0: its corners in either direction, without a repetition of the
+// first corner.
+using Ring = std::vector<Eigen::Vector2d>;
+
+// Places at which rings cross themselves or each other, or run along each other; at most `most`.
+// Rings may touch or cross in corners. Precondition: the coordinates are finite.
+struct Crossing {
+  Eigen::Vector2d place;
+  std::size_t ring = 0, other = 0;
+};
+std::vector<Crossing> crossings_of(std::span<const Ring> rings, std::size_t most = 1);
+
+// A polygon: the points that lie inside an odd number of rings. So a ring in another ring is a
+// hole, and rings beside each other are parts of one polygon.
+class PolygonPieces {
+ public:
+  // Precondition: crossings_of() is empty, and the coordinates are finite. Large common offsets of
+  // the coordinates cost digits.
+  explicit PolygonPieces(std::span<const Ring> rings);
+
+  double area() const { return area_; }
+  bool contains(const Eigen::Vector2d& place) const;
+
+  // Calls `use` for each piece of the triangle above or below the polygon: 3 to 7 corners of a
+  // convex polygon in the plane of the triangle, in the triangle's direction. Their union is the
+  // whole part, and they overlap in lines only. The numbers of a piece may be those of a triangle
+  // without area.
+  void clip(const std::array<Eigen::Vector3d, 3>& corners,
+            const std::function<void(std::span<const Eigen::Vector3d>)>& use) const;
+
+ private:
+  // Between two vertical lines: y from `low` to `high` at both of them.
+  struct Trapezoid {
+    double left = 0, right = 0;
+    Eigen::Vector2d low, high;
+
+    double low_at(double x) const;
+    double high_at(double x) const;
+  };
+  // The strip that contains x, or the nearest one. Precondition: there is a strip.
+  std::size_t strip_at(double x) const;
+  std::span<const Trapezoid> strip(std::size_t index) const {
+    return std::span(pieces_).subspan(begin_[index], begin_[index + 1] - begin_[index]);
+  }
+
+  std::vector<double> lines_;       // x of the vertical lines, in increasing order
+  std::vector<Trapezoid> pieces_;   // strip by strip, in each strip from below
+  std::vector<std::size_t> begin_;  // of the strips in pieces_; the last is the end
+  double area_ = 0;
+};
+
+}  // namespace axial::geometry

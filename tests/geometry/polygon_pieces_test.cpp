@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/polygon_pieces.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace axial::geometry {
+namespace {
+
+Ring star(const Eigen::Vector2d& centre, double inner, double outer, int corners) {
+  Ring ring;
+  for (int i = 0; i < 2 * corners; ++i) {
+    const double angle = 0.1 + std::numbers::pi * i / corners, radius = i % 2 ? inner : outer;
+    ring.emplace_back(centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+  }
+  return ring;
+}
+
+// Half the sum of cross products of neighbouring corners.
+double area_of(const Ring& ring) {
+  double sum = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Eigen::Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
+    sum += a.x() * b.y() - a.y() * b.x();
+  }
+  return std::abs(sum) / 2;
+}
+
+// By the number of edges that a ray to the right crosses.
+bool is_inside(const Ring& ring, const Eigen::Vector2d& place) {
+  bool inside = false;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Eigen::Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
+    if ((a.y() > place.y()) != (b.y() > place.y()) &&
+        place.x() < a.x() + (place.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
+      inside = !inside;
+  }
+  return inside;
+}
+
+double area_of(std::span<const Eigen::Vector3d> corners) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t k = 2; k < corners.size(); ++k)
+    sum += (corners[k - 1] - corners[0]).cross(corners[k] - corners[0]);
+  return sum.norm() / 2;
+}
+
+TEST(PolygonPieces, HaveTheAreaOfRingsWithoutHoles) {
+  const std::vector<Ring> rings{star({0, 0}, 1, 2, 7), star({0.1, 0.1}, 0.3, 0.5, 5),
+                                star({6, 1}, 0.5, 1, 3)};
+  EXPECT_TRUE(crossings_of(rings).empty());
+  EXPECT_NEAR(PolygonPieces(rings).area(),
+              area_of(rings[0]) - area_of(rings[1]) + area_of(rings[2]), 1e-12);
+}
+
+TEST(PolygonPieces, ContainThePointsInAnOddNumberOfRings) {
+  const std::vector<Ring> rings{star({0, 0}, 1, 2, 7), star({0.1, 0.1}, 0.3, 0.5, 5),
+                                star({6, 1}, 0.5, 1, 3)};
+  const PolygonPieces pieces(rings);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> x(-3, 8), y(-3, 3);
+  for (int i = 0; i < 5000; ++i) {
+    const Eigen::Vector2d place(x(random), y(random));
+    int count = 0;
+    for (const Ring& ring : rings) count += is_inside(ring, place);
+    EXPECT_EQ(pieces.contains(place), count % 2 == 1) << place.transpose();
+  }
+}
+
+// The parts of random triangles in a square, also of upright ones, against sums over many points.
+TEST(PolygonPieces, ClipTriangles) {
+  const std::vector<Ring> rings{star({0, 0}, 1, 2, 7), star({0.1, 0.1}, 0.3, 0.5, 5)};
+  const PolygonPieces pieces(rings);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> uniform(-2.5, 2.5);
+  for (int i = 0; i < 30; ++i) {
+    std::array<Eigen::Vector3d, 3> corners;
+    for (Eigen::Vector3d& corner : corners)
+      corner = {uniform(random), uniform(random), uniform(random)};
+    if (i % 3 == 0) corners[2].head<2>() = corners[0].head<2>();  // upright
+    double area = 0;
+    pieces.clip(corners, [&](std::span<const Eigen::Vector3d> part) { area += area_of(part); });
+    constexpr int kSteps = 400;
+    int inside = 0, all = 0;
+    for (int u = 0; u < kSteps; ++u)
+      for (int v = 0; u + v < kSteps; ++v) {
+        const double a = (u + 1.0 / 3) / kSteps, b = (v + 1.0 / 3) / kSteps;
+        const Eigen::Vector3d place =
+            corners[0] + a * (corners[1] - corners[0]) + b * (corners[2] - corners[0]);
+        ++all;
+        inside += is_inside(rings[0], place.head<2>()) != is_inside(rings[1], place.head<2>());
+      }
+    // Points at the rim count wholly: about 6 kSteps of kSteps^2 / 2 are there.
+    EXPECT_NEAR(area / area_of(corners), static_cast<double>(inside) / all, 0.01) << i;
+  }
+}
+
+TEST(PolygonPieces, SharedEdgesAreClippedOnce) {
+  const std::vector<Ring> rings{{{0, 0}, {4, 0}, {4, 4}, {0, 4}}};
+  const PolygonPieces pieces(rings);
+  double area = 0;
+  const auto add = [&](std::span<const Eigen::Vector3d> part) { area += area_of(part); };
+  pieces.clip({{{0, 0, 1}, {2, 0, 1}, {2, 2, 1}}}, add);
+  pieces.clip({{{0, 0, 1}, {2, 2, 1}, {0, 2, 1}}}, add);
+  EXPECT_NEAR(area, 4, 1e-12);
+  pieces.clip({{{4, 0, 0}, {6, 0, 0}, {6, 2, 0}}}, add);
+  EXPECT_NEAR(area, 4, 1e-12);
+}
+
+TEST(PolygonPieces, CrossingsAreFound) {
+  const std::vector<Ring> bow{{{0, 0}, {2, 2}, {2, 0}, {0, 2}}};
+  const auto found = crossings_of(bow);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR((found[0].place - Eigen::Vector2d(1, 1)).norm(), 0, 1e-12);
+  const std::vector<Ring> along{{{0, 0}, {2, 0}, {2, 2}, {0, 2}}, {{1, 0}, {3, 0}, {3, -1}}};
+  EXPECT_EQ(crossings_of(along).size(), 1U);
+  const std::vector<Ring> touching{{{0, 0}, {2, 0}, {2, 2}, {0, 2}}, {{2, 2}, {3, 2}, {3, 3}}};
+  EXPECT_TRUE(crossings_of(touching).empty());
+}
+
+}  // namespace
+}  // namespace axial::geometry
