@@ -55,12 +55,13 @@ std::string reason_to_write(const fs::path& file, CPLErrorNum number, int system
   return explains_a_failed_write(system_error) ? std::strerror(system_error) : "the write failed";
 }
 
-std::string reason_to_read(const fs::path& file, CPLErrorNum number) {
+// `kind`: of the file that was expected.
+std::string reason_to_read(const fs::path& file, CPLErrorNum number, const char* kind) {
   std::error_code ignored;
   if (!fs::exists(file, ignored)) return "it does not exist";
   if (number == CPLE_OutOfMemory)
     return "it is damaged, or there is not enough memory for its tiles";
-  return "it is no GeoTIFF, or it is damaged";
+  return fmt::format("it is no {}, or it is damaged", kind);
 }
 
 }  // namespace
@@ -71,6 +72,8 @@ void start_gdal() {
     GDALRegister_GTiff();
     GDALRegister_COG();
     RegisterOGRGeoJSON();
+    RegisterOGRGeoPackage();
+    RegisterOGRShape();
     GDALSetCacheMax64(static_cast<GIntBig>(kCacheBytes));
   });
 }
@@ -104,7 +107,13 @@ void GdalErrors::require_written(bool works, const fs::path& file) const {
 
 void GdalErrors::require_read(bool works, const fs::path& file) const {
   if (works && !failed_) return;
-  fail_in(file, "cannot be read: {}", reason_to_read(file, number_));
+  fail_in(file, "cannot be read: {}", reason_to_read(file, number_, "GeoTIFF"));
+}
+
+void GdalErrors::require_vectors_read(bool works, const fs::path& file) const {
+  if (works && !failed_) return;
+  fail_in(file, "cannot be read: {}",
+          reason_to_read(file, number_, "GeoJSON, GeoPackage or shape file"));
 }
 
 }  // namespace axial::map

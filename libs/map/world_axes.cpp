@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "private/gdal_calls.h"
 #include "private/map_metadata.h"
 
 namespace axial::map {
@@ -60,6 +61,13 @@ std::optional<WorldAxes> axes_in(GDALDatasetH file, const std::filesystem::path&
         result.axes.determinant() > 0 && result.offset.allFinite()))
     fail_in(path, "{}: is no rotation", kAxes);
   return result;
+}
+
+StatedPlace stated_place(const std::filesystem::path& path) {
+  const GdalErrors errors;
+  const DatasetPtr file(GDALOpen(path.c_str(), GA_ReadOnly));
+  errors.require_read(file != nullptr, path);
+  return {axes_in(file.get(), path), GDALGetProjectionRef(file.get())};
 }
 
 }  // namespace axial::map

@@ -31,6 +31,8 @@ class GdalErrors {
   void require_written(bool works, const std::filesystem::path& file) const;
   // The same for a file that was read.
   void require_read(bool works, const std::filesystem::path& file) const;
+  // The same for a file of points, lines or polygons.
+  void require_vectors_read(bool works, const std::filesystem::path& file) const;
 
  private:
   static void CPL_STDCALL collect(CPLErr level, CPLErrorNum number, const char* message);

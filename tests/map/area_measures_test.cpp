@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/area_measures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace axial::map {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// The graph of a function on the square [-1, 1]^2, in squares of two triangles.
+Mesh graph(int steps, const std::function<double(double, double)>& height) {
+  Mesh mesh;
+  for (int j = 0; j <= steps; ++j)
+    for (int i = 0; i <= steps; ++i) {
+      const double x = -1 + 2.0 * i / steps, y = -1 + 2.0 * j / steps;
+      mesh.vertices.emplace_back(Eigen::Vector3d(x, y, height(x, y)).cast<float>());
+    }
+  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(j * (steps + 1) + i); };
+  for (int j = 0; j < steps; ++j)
+    for (int i = 0; i < steps; ++i) {
+      mesh.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return mesh;
+}
+
+Area disc(const Eigen::Vector2d& centre, double radius, int corners = 720) {
+  Area area{"disc", {{}}};
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2 * kPi * i / corners;
+    area.rings[0].push_back(centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+  }
+  return area;
+}
+
+TEST(AreaMeasures, OfAPlaneAreExact) {
+  const Mesh mesh = graph(37, [](double x, double y) { return 0.75 * x - 0.5 * y + 0.25; });
+  const Eigen::Vector3d origin(500000, 4000000, -20);
+  const AreaMeasures found =
+      AreaMeter(mesh, origin)
+          .measure({"square",
+                    {{{499999.5, 3999999.5},
+                      {500000.5, 3999999.5},
+                      {500000.5, 4000000.5},
+                      {499999.5, 4000000.5}},
+                     {{499999.9, 4000000}, {500000.1, 4000000}, {500000, 4000000.2}}}});
+  const double steepness = std::sqrt(1 + 0.75 * 0.75 + 0.5 * 0.5);
+  // Vertices are floats, and coordinates of UTM have 1e-9 m.
+  EXPECT_NEAR(found.polygon, 0.98, 1e-8);
+  EXPECT_NEAR(found.planar, 0.98, 1e-6);
+  EXPECT_NEAR(found.rugosity(), steepness, 1e-6);
+  EXPECT_NEAR(found.rugosity_on_slope(), 1, 1e-6);
+  EXPECT_NEAR(found.slope_degrees(), std::atan(std::hypot(0.75, 0.5)) * 180 / kPi, 1e-4);
+  // The plane falls to -x and +y: to the north-west, nearer to the west.
+  EXPECT_NEAR(found.aspect_degrees(), 360 - std::atan2(0.75, 0.5) * 180 / kPi, 1e-3);
+  EXPECT_NEAR(found.roughness(), 0, 1e-4);
+  EXPECT_NEAR(found.highest - found.lowest, 1.25, 1e-6);
+  EXPECT_NEAR(found.above, 0, 1e-6);
+  EXPECT_NEAR(found.below, 0, 1e-6);
+  EXPECT_EQ(found.rim, 1);
+}
+
+// A cap of a sphere of radius 1.25, 0.5 high, over a disc of radius 1: closed forms.
+TEST(AreaMeasures, OfACapAreThoseOfTheSphere) {
+  const double radius = 1.25, high = 0.5;
+  const Mesh mesh = graph(400, [&](double x, double y) {
+    return std::sqrt(std::max(0.0, radius * radius - x * x - y * y)) - (radius - high);
+  });
+  const AreaMeasures found = AreaMeter(mesh, Eigen::Vector3d::Zero()).measure(disc({0, 0}, 0.999));
+  const double base = 0.999, rim = std::sqrt(radius * radius - base * base) - (radius - high);
+  const double cap = high - rim;
+  EXPECT_NEAR(found.surface, 2 * kPi * radius * cap, 2e-4);
+  EXPECT_NEAR(found.planar, kPi * base * base, 1e-4);
+  EXPECT_NEAR(found.above, kPi * cap * cap * (3 * radius - cap) / 3, 3e-4);
+  EXPECT_NEAR(found.below, 0, 1e-5);
+  EXPECT_NEAR(found.slope_degrees(), 0, 1e-2);
+  EXPECT_NEAR(found.highest, high, 1e-6);
+}
+
+// A table over the ground: its upper side, its lower side and the ground below it.
+TEST(AreaMeasures, OverhangsCountOnce) {
+  Mesh mesh = graph(2, [](double, double) { return 0.0; });
+  const auto add_square = [&](float height, bool is_up) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const auto& [x, y] : {std::pair(-0.5f, -0.5f), {0.5f, -0.5f}, {0.5f, 0.5f}, {-0.5f, 0.5f}})
+      mesh.vertices.emplace_back(x, y, height);
+    for (const auto& [a, b, c] : {std::array{0u, 1u, 2u}, {0u, 2u, 3u}})
+      mesh.faces.push_back(is_up ? std::array{first + a, first + b, first + c}
+                                 : std::array{first + a, first + c, first + b});
+  };
+  add_square(0.4f, true);
+  add_square(0.3f, false);
+  const AreaMeasures found =
+      AreaMeter(mesh, Eigen::Vector3d::Zero())
+          .measure({"all", {{{-0.9, -0.9}, {0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}}}});
+  EXPECT_NEAR(found.planar, 1.8 * 1.8, 1e-6);
+  EXPECT_NEAR(found.surface, 1.8 * 1.8 + 2, 1e-6);
+  EXPECT_NEAR(found.above, 0.1, 1e-6);  // of the plate of 1 x 1 x 0.1
+  EXPECT_NEAR(found.below, 0, 1e-6);
+}
+
+TEST(AreaMeasures, OfHolesAndOutsideAreTold) {
+  const Mesh mesh = graph(10, [](double, double) { return 0.0; });
+  const AreaMeter meter(mesh, Eigen::Vector3d::Zero());
+  const AreaMeasures half = meter.measure({"half", {{{0, -0.5}, {2, -0.5}, {2, 0.5}, {0, 0.5}}}});
+  EXPECT_NEAR(half.planar, 1, 1e-6);
+  EXPECT_NEAR(half.polygon, 2, 1e-9);
+  EXPECT_NEAR(half.rim, 0.5, 2e-3);  // 2000 places; a half of 6 m
+  const AreaMeasures outside = meter.measure(disc({5, 5}, 1));
+  EXPECT_EQ(outside.planar, 0);
+  EXPECT_EQ(outside.surface, 0);
+}
+
+}  // namespace
+}  // namespace axial::map
