@@ -68,6 +68,8 @@ PROGRAMS = {program.name: program for program in (
     Program("CompareSurveys", ("-i", "mesh.ply", "--other", "textured.ply", "--scene",
                                "scene_dense.mvs", "-o", "out", "--gsd", "0.02"),
             ("mesh.ply", "textured.ply", *DENSE), ("textured0.png", *PHOTOGRAPHS)),
+    Program("MeasureSurface", ("-i", "mesh.ply", "--areas", "areas.geojson", "--map", "map.dem.tif", "-o", "out"),
+            ("mesh.ply", "areas.geojson", "map.dem.tif"), ()),
     Program("ViewScene", ("-i", "scene_dense.mvs", "-p", "scene_dense.ply", "-m", "textured.ply",
                           "--report", "out", "--max-points", "2000", "--map", "map", "--sfm-model",
                           "sim/sparse", "--photograph-size", "40", "--depth-map-size", "40"),
@@ -173,6 +175,9 @@ def make_all(binaries, folder):
     (folder / "control.json").write_text(
         '{"crs": "EPSG:32617", "points": [{"label": "target 1", "x": 500000, "y": 2500000, "z": -3, "sigma": 0.01}]}')
     (folder / "plates.csv").write_text("label,lat,lon,depth,xyAcc,zAcc\n2,22.6,-81.0,-3.5,0.02,0.03\n")
+    (folder / "areas.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": {"name": "plot"}, "geometry": {"type": "Polygon", "coordinates": [
+            [[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, -0.1]]]}}]}))
     (folder / "bars.txt").write_text("target 1,target 2,0.5,0.001\n")
     (folder / "ReproducePaper.cfg").write_text("# A comment\nquick = 1\n")
     (folder / "paper").mkdir()

@@ -15,8 +15,8 @@ import unittest
 
 BUILD, SOURCE, VERSION = sys.argv[1:4]
 PROGRAMS = ["AlignModel", "CalibrateHousing", "CompareSurveys", "DensifyPointCloud",
-            "EvaluateReconstruction", "ExtractFrames", "FindTargets", "InterfaceCOLMAP", "MapSurface", "ReconstructMesh",
-            "RefineMesh", "RefinePoses", "ReproducePaper", "RestoreColors", "SimulateUnderwater", "TextureMesh",
+            "EvaluateReconstruction", "ExtractFrames", "FindTargets", "InterfaceCOLMAP", "MapSurface", "MeasureSurface",
+            "ReconstructMesh", "RefineMesh", "RefinePoses", "ReproducePaper", "RestoreColors", "SimulateUnderwater", "TextureMesh",
             "TransformScene", "ViewScene"]
 
 

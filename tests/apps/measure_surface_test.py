@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""MeasureSurface on the wall of tiny_scene.py: tables, coordinates of maps, wrong input."""
+
+import contextlib
+import csv
+import io
+import json
+import sqlite3
+
+from programs import files_below, main, write
+from worlds import Wall
+
+
+def polygons(**rings):
+    """A GeoJSON file of one polygon for each name."""
+    return json.dumps({"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": {"name": name}, "geometry": {
+            "type": "Polygon", "coordinates": [[*ring, ring[0]]]}} for name, ring in rings.items()]})
+
+
+def box(left, low, right, high):
+    return [[left, low], [right, low], [right, high], [left, high]]
+
+
+class MeasureTest(Wall):
+    def setUp(self):
+        super().setUp()
+        self.succeeds(*self.command("MapSurface", "--up", "0,0,-1"))
+        write(self.path("work", "plots.geojson"), polygons(plot=box(-0.2, -0.1, 0.2, 0.2), far=box(50, 50, 51, 51)))
+
+    def measure(self, *more, areas="plots.geojson", map_file="scene_map.dem.tif", output="measured"):
+        return ("MeasureSurface", "-w", self.work, "-i", self.mesh, "--areas", areas, "--map", map_file, "-o", output,
+                *more)
+
+    def rows(self):
+        return {row["name"]: row for row in csv.DictReader(io.StringIO(self.at("measured.csv").decode()))}
+
+
+class Tables(MeasureTest):
+    def test_a_flat_wall_is_as_large_as_the_polygon(self):
+        said = self.succeeds(*self.measure("--length-sigma", "0.5")).stdout
+        self.assertIn("polygon 'far': the mesh has no surface there", said)
+        plot, far = self.rows()["plot"], self.rows()["far"]
+        for name in ("polygon_m2", "planar_m2", "surface_m2"):
+            self.assertAlmostEqual(float(plot[name]), 0.12, places=5, msg=name)
+        self.assertAlmostEqual(float(plot["sigma_surface_m2"]), 2 * 0.005 * 0.12, places=6)
+        self.assertAlmostEqual(float(plot["rugosity"]), 1, places=4)
+        self.assertEqual((far["polygon_m2"], far["planar_m2"], far["rugosity"]), ("1.000000", "0.000000", ""))
+        with contextlib.closing(sqlite3.connect(self.path("work", "measured.gpkg"))) as table:
+            found = table.execute("SELECT name, rugosity, planar_m2 FROM areas ORDER BY fid").fetchall()
+        self.assertEqual([row[0] for row in found], ["plot", "far"])
+        self.assertAlmostEqual(found[0][1], 1, places=4)
+        self.assertIsNone(found[1][1])
+
+    def test_the_same_input_gives_the_same_bytes(self):
+        self.succeeds(*self.measure())
+        first = self.at("measured.csv"), self.at("measured.gpkg")
+        self.succeeds(*self.measure("--max-threads", "1"))
+        self.assertEqual((self.at("measured.csv"), self.at("measured.gpkg")), first)
+
+    def test_polygons_lie_on_the_map(self):
+        """With another direction of the heights, the wall stands on its edge in the map."""
+        self.succeeds(*self.measure())
+        flat = self.rows()["plot"]
+        self.succeeds("MeasureSurface", "-w", self.work, "-i", self.mesh, "--areas", "plots.geojson", "--up", "0,0,-1",
+                      "-o", "measured")
+        self.assertEqual(self.rows()["plot"], flat)
+
+
+class Errors(MeasureTest):
+    def test_wrong_input_is_named_and_writes_nothing(self):
+        before = files_below(self.work)
+        for name, content, expected in (
+                ("bow", polygons(bow=[[0, 0], [1, 1], [1, 0], [0, 1]]),
+                 "polygon 'bow' crosses itself at (0.500, 0.500)"),
+                ("away", polygons(away=box(50, 50, 51, 51)), "has no surface in any polygon"),
+                ("empty", polygons(), "has no")):
+            write(self.path("work", name + ".geojson"), content)
+            self.refuses(expected, *self.measure(areas=name + ".geojson"))
+        self.refuses("--areas is missing", "MeasureSurface", "-w", self.work, "-i", self.mesh)
+        self.refuses("contradicts --map", *self.measure("--epsg", "32617"))
+        self.refuses("none.tif: ", *self.measure(map_file="none.tif"))
+        self.refuses("none.gpkg: ", *self.measure(areas="none.gpkg"))
+        write(self.path("work", "clash.gpkg"), polygons(a=box(0, 0, 1, 1)))
+        self.refuses("--output-file", *self.measure(output="clash", areas="clash.gpkg"))
+        self.assertEqual(files_below(self.work) - before, {"bow.geojson", "away.geojson", "empty.geojson",
+                                                          "clash.gpkg"})
+
+
+if __name__ == "__main__":
+    main()
