@@ -68,7 +68,7 @@ Shares share_out(const MemoryBudget& memory, const survey::Survey& survey) {
   for (const survey::View& view : survey.views) {
     const std::uint64_t pixels = view.pixels();
     image = std::max(image, survey::bytes_needed({pixels, view.masked(), false}));
-    decode = std::max(decode, survey::bytes_needed_to_load(io::bytes_needed(view.header), pixels));
+    decode = std::max(decode, survey::bytes_needed_to_load(view.decoding_bytes(), pixels));
   }
   const std::uint64_t left = memory.left();
   const std::uint64_t room = left - std::min(left, decode);

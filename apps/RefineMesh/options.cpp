@@ -40,6 +40,10 @@ void declare_io(OptionList& list, Raw& raw, Options& options) {
       .add_with_default("ignore-mask-label", &survey.ignore_mask_label,
                         "mask value to leave out; below 0: no masks (default with --mask-path: 0)");
   io::declare_bit_depth(list, survey.bit_depth);
+  list.add("colors", &survey.color_folder,
+           "folder of RestoreColors: its photographs are compared, in the place of the scene's: "
+           "they show more in hazy water")
+      .sets("color_folder");
 }
 
 void declare_refinement(OptionList& list, Raw& raw, Options& options) {
