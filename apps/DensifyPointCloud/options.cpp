@@ -308,8 +308,6 @@ void convert(const Raw& raw, Options& options) {
   settings.matching.pictures = pictures_of(common.verbosity);
   settings.job = job_of(raw, options.parsed);
   take_tiling(raw, options.parsed, settings);
-  if (settings.survey.match_colors && settings.survey.color_folder.empty())
-    fail("--match-restored needs --colors");
   densify::check(settings);
 }
 
@@ -334,9 +332,10 @@ Options parse_command_line(int argc, const char* const* argv) {
   declare_io(program.visible, settings);
   io::declare_bit_depth(program.visible, settings.survey.bit_depth);
   survey::declare_colors(program.visible, settings.survey);
-  program.visible.add_switch(
-      "match-restored", &settings.survey.match_colors,
-      "match the photographs of --colors, too: they show more in hazy water");
+  program.visible
+      .add_switch("match-restored", &settings.survey.match_colors,
+                  "match the photographs of --colors, too: they show more in hazy water")
+      .sets("match_colors");
   declare_camera(program.visible, raw, settings);
   declare_matching(program.visible, settings);
   declare_parts(program.visible, raw);

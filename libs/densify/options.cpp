@@ -49,6 +49,8 @@ void check_tiles(const Options& options) {
 }  // namespace
 
 void check(const Options& options) {
+  if (options.survey.match_colors && options.survey.color_folder.empty())
+    fail("{} needs {}", setting("match_colors"), setting("color_folder"));
   if (const auto* job = options.job_as<StageJob>()) check_stage(*job, options);
   if (const auto* job = options.job_as<PlanJob>(); job && !options.matching.make_maps)
     fail("{} {}: plans only runs that make all depth maps", setting("plan"), job->file.string());

@@ -219,20 +219,27 @@ class WithStandIns(StandIns):
 
     def test_photographs_without_water_are_matched_again(self):
         for words, expected in ((["--match-restored"], "is only for --restore-colors"),
+                                (["--restore-colors", "--match-restored", "--densify=--match-restored 1"],
+                                 "--densify: --match-restored contradicts"),
+                                (["--restore-colors", "--match-restored", "--mesh=-p a.ply"], "--mesh: -p contradicts"),
                                 (["--restore-colors", "--match-restored", "--cluster", "local"], "--cluster")):
             self.assertIn(expected, self.refused(*words))
         every = {step.name: " ".join(step.command) for step in reconstruct_steps.steps(options_of(
-            restore_colors=True, match_restored=True, until="page", densify="--remove-dmaps 1"), self.folder / "out")}
+            restore_colors=True, match_restored=True, until="page", truth="truth.ply", earlier="old/mesh.ply"),
+            self.folder / "out")}
         self.assertEqual(list(every)[7:], ["mesh", "refine-mesh", "colors", "restored-cloud", "restored-mesh",
-                                           "restored-refine-mesh", "texture", "map", "raw-map", "page"])
+                                           "restored-refine-mesh", "texture", "map", "raw-map", "compare", "page",
+                                           "evaluate"])
         out = self.folder / "out"
         self.assertIn(f"-m {out}/scene_dense_refined.ply", every["colors"])
-        self.assertIn(f"-w {out}/rematched ", every["restored-cloud"])
         self.assertIn(f"--colors {out}/restored --match-restored 1 -o {out}/scene_restored.mvs",
                       every["restored-cloud"])
         self.assertIn(f"-i {out}/scene_restored.mvs -o {out}/scene_restored_mesh.ply", every["restored-mesh"])
-        self.assertIn(f"-m {out}/scene_restored_mesh.ply -o {out}/scene_restored_refined.ply",
-                      every["restored-refine-mesh"])
+        self.assertIn(f"-m {out}/scene_restored_mesh.ply -o {out}/scene_restored_refined.ply "
+                      f"--refractive 1 --colors {out}/restored", every["restored-refine-mesh"])
+        self.assertIn(f"--other {out}/scene_restored_refined.ply", every["compare"])
+        self.assertIn(f"-p {out}/scene_restored.ply", every["page"])
+        self.assertIn(f"-i {out}/scene_restored.ply", every["evaluate"])
         for name in ("texture", "raw-map"):
             self.assertIn(f"-m {out}/scene_restored_refined.ply", every[name])
         names = [step.name for step in reconstruct_steps.steps(options_of(

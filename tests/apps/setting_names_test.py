@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 DECLARE_OPTIONS = {"libs/base/newer_options.cpp", "libs/base/option_values.cpp", "libs/base/program.cpp",
                    "libs/io/openmvs/scene_options.cpp", "libs/survey/photograph_options.cpp"}
 # Settings that a program has no option for, and never uses.
-UNUSED = {"RefineMesh": {"color_folder"}}
+UNUSED = {}
 COMMAND_LINES = "libs/experiments/"  # puts together command lines of programs
 
 # The programs that name the settings of each library, and how many settings the library has at least.

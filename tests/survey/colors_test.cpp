@@ -62,6 +62,12 @@ TEST_F(ColorsTest, TheFolderGivesTheGreyThatIsMatched) {
   const Pixels grey = Photographs(survey).read(1, Channels::grey);
   EXPECT_EQ(grey.grey(3, 4), 140);
   EXPECT_TRUE(grey.color.empty());
+  const std::string print = fingerprint_of_views(survey);
+  write_colors("image2.png", {1, 2, 3});
+  EXPECT_NE(fingerprint_of_views(survey), print);
+  options_.match_colors = false;
+  EXPECT_EQ(fingerprint_of_views(opened()), before);
+  write_colors("image2.png", kRestored);
   // The photograph itself is not read.
   fs::resize_file(folder_ / "image2.png", fs::file_size(folder_ / "image2.png") / 2);
   EXPECT_EQ(Photographs(survey).read(1, Channels::grey).grey(3, 4), 140);

@@ -57,10 +57,10 @@ def needs_of(given, sizes):
     seconds = {"features": FEATURE_SECONDS * sum(seen) / 1e6,
                "matches": pairs_of(given.matcher, count) * (fixed + each * sum(features) / count),
                "poses": POSE_SECONDS * count,
-               "depth maps": DEPTH_SECONDS * sum(depth) * (2 if given.match_restored else 1) / 1e6}
-    memory = max(min(cores, count) * FEATURE_MEMORY * max(seen), DEPTH_MEMORY[0] + DEPTH_MEMORY[1] * max(depth))
+               "depth maps": DEPTH_SECONDS * sum(depth) / 1e6}
     if given.match_restored:
-        depth = 2 * depth
+        seconds["depth maps without water"] = seconds["depth maps"]
+    memory = max(min(cores, count) * FEATURE_MEMORY * max(seen), DEPTH_MEMORY[0] + DEPTH_MEMORY[1] * max(depth))
     disk = 2 * OF_FEATURE * sum(features) + (DEPTH_BYTES + CLOUD_BYTES) * sum(depth)
     disk *= 1 if given.until in ("poses", "cloud") else AFTER_THE_CLOUD
     if given.restore_colors:

@@ -18,7 +18,7 @@ from .steps import record_file
 
 SKIPPED = [name for name, kind in KINDS.items() if kind.can_be_left_out]
 MOST_TILES = 1000  # as in the programs
-OPTIONAL = ("frames", "masks", "targets", "refine-mesh")  # steps that many runs do not have
+OPTIONAL = ("frames", "masks", "targets", "refine-mesh", *OF_RESTORING)  # steps that many runs do not have
 
 
 def options(script_folder, description, words=None):
@@ -147,6 +147,10 @@ def check_restoring(given):
         raise Failure("--match-restored: is only for --restore-colors")
     if not given.restore_colors:
         return
+    for option, refused in (("densify", ("--match-restored",)), ("mesh", ("--pointcloud-file", "-p"))):
+        for word in words_of(option, given) if given.match_restored else ():
+            if find_option(word, refused):
+                raise Failure(f"--{option}: {word} contradicts --match-restored")
     if given.match_restored and given.cluster:
         raise Failure("--match-restored: contradicts --cluster")
     if RESULTS.index(given.until) < RESULTS.index(KINDS["colors"].result):
@@ -229,6 +233,11 @@ def mesh_of_earlier_survey(path):
     if not path.is_dir():
         return path
     refined, mesh = (path / f"scene_dense_{name}.ply" for name in ("refined", "mesh"))
+    rematched = {"restored-refine-mesh": path / "scene_restored_refined.ply",
+                 "restored-mesh": path / "scene_restored_mesh.ply"}
+    for name, restored in rematched.items():  # of --match-restored
+        if restored.exists() and is_current(name, path):
+            return restored
     found = next(filter(pathlib.Path.exists, (refined, mesh)), None)
     if not found:
         raise Failure(f"--earlier {path}: has neither {refined.name} nor {mesh.name}")

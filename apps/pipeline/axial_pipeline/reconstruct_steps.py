@@ -15,7 +15,6 @@ from .steps import Files, Report, Step, Tiles
 
 RUN_FILE = "run.json"
 RESTORED = "restored"  # the folder of the photographs without water
-REMATCHED = "rematched"  # the folder of their depth maps
 REFRACTIVE = ("--refractive", 1)
 
 
@@ -25,8 +24,13 @@ def meshes(out):
 
 
 def first_mesh(given, out):
-    """The mesh before --match-restored."""
+    """The mesh of the first cloud, refined unless this is left out."""
     return meshes(out)["refine-mesh" in wanted_steps(given)]
+
+
+def final_cloud(given, out):
+    """The cloud that is evaluated: with --match-restored, that of the photographs without water."""
+    return out / ("scene_restored.ply" if "restored-mesh" in wanted_steps(given) else "scene_dense.ply")
 
 
 def restored_meshes(out):
@@ -35,6 +39,7 @@ def restored_meshes(out):
 
 
 def best_mesh(given, out):
+    """The mesh that textures, maps, comparison and page use."""
     wanted = wanted_steps(given)
     return (restored_meshes(out)["restored-refine-mesh" in wanted] if "restored-mesh" in wanted
             else first_mesh(given, out))
@@ -188,15 +193,14 @@ def color_steps(run, wanted):
                                               *run.words("colors"))
         yield run.step("colors", command, Report(out / RESTORED / "colors.json"), anew=[out / RESTORED])
     if "restored-cloud" in wanted:
-        # The same command as that of the step "densify", so that it takes the depth maps of this step. Other depth
-        # maps lie in a folder of their own.
+        # The same command as that of the step "densify", so that it takes the depth maps of this step, or with
+        # --match-restored replaces them.
         words = without_options(run.words("densify"), ["--pinhole-export", "--report-file"])
-        folder, match = (out / REMATCHED, ["--match-restored", "1"]) if run.given.match_restored else (out, [])
-        command = run.programs.densify(out / "scene.mvs", folder, *REFRACTIVE, *run.tiles(), *words,
+        match = ["--match-restored", "1"] if run.given.match_restored else []
+        command = run.programs.densify(out / "scene.mvs", out, *REFRACTIVE, *run.tiles(), *words,
                                        *colors(run, wanted, words), *match, "-o", out / "scene_restored.mvs")
         yield run.step("restored-cloud", command, out / "scene_restored.ply",
-                       also=read_by(command, run.own("densify")), before=lambda: folder.mkdir(exist_ok=True),
-                       changed=[folder] if match else [])
+                       also=read_by(command, run.own("densify")))
     yield from rematched_mesh_steps(run, wanted)
 
 
@@ -207,7 +211,8 @@ def rematched_mesh_steps(run, wanted):
         command = run.programs.reconstruct_mesh(scene, mesh, *REFRACTIVE, *run.tiles(), *run.words("mesh"))
         yield run.step("restored-mesh", command, mesh, also=read_by(command, run.own("mesh")))
     if "restored-refine-mesh" in wanted:
-        command = run.programs.refine_mesh(scene, mesh, refined, *REFRACTIVE, *run.words("refine-mesh"))
+        words = run.words("refine-mesh")
+        command = run.programs.refine_mesh(scene, mesh, refined, *REFRACTIVE, *colors(run, wanted, words), *words)
         yield run.step("restored-refine-mesh", command, refined, also=read_by(command, run.own("refine-mesh")))
 
 
@@ -271,12 +276,11 @@ def words_about_surveys(words, known, earlier, scene):
 def words_about_results(run, wanted):
     """The options of ViewScene for the results of earlier steps, except those that the user gave."""
     out, kept_maps = run.out, keeps_depth_maps(run.given)
-    maps = out / REMATCHED if run.given.match_restored else out
     return not_given_again([("--run", out / RUN_FILE), ("--sfm-model", run.refined),
                             *([("--truth", run.given.truth)] if run.given.truth else []),
                             *([("--map", out / "scene_map")] if "map" in wanted else []),
                             *([("--change", out / "scene")] if "compare" in wanted else []),
-                            *([("--depth-maps", maps)] if kept_maps else []),
+                            *([("--depth-maps", out)] if kept_maps else []),
                             *([("--colors", out / RESTORED)] if "colors" in wanted else [])], run.own("page"))
 
 
@@ -358,6 +362,6 @@ def steps(given, out):
     yield from mesh_steps(run, wanted)
     yield from survey_steps(run, wanted)
     if given.truth:
-        command = run.programs.evaluate(out / "scene_dense.ply", given.truth, "--json", out / "evaluation.json",
+        command = run.programs.evaluate(final_cloud(given, out), given.truth, "--json", out / "evaluation.json",
                                         "--align", "icp")
         yield run.step("evaluate", command, Report(out / "evaluation.json"), reads=[given.truth])

@@ -55,7 +55,7 @@ KINDS = {
                         takes_masks=True, has_limits=True),
     "colors": Kind(["restored"], (8000, 4, 60, 0.2), "RestoreColors", result="texture", takes_masks=True,
                    has_limits=True),
-    "restored-cloud": Kind(["scene_restored.*", "rematched"], (4000, 0, 60, 0.2), result="texture", has_limits=True),
+    "restored-cloud": Kind(["scene_restored.*"], (4000, 0, 60, 0.2), result="texture", has_limits=True),
     "restored-mesh": Kind(["scene_restored_mesh.*"], (8000, 4, 60, 0.5), result="texture", has_limits=True),
     "restored-refine-mesh": Kind(["scene_restored_refined.*"], (8000, 4, 60, 1), result="texture", has_limits=True),
     "texture": Kind([f"scene_textured{tile}{end}" for tile in ("", TILE) for end in TEXTURED], (8000, 4, 60, 0.5),

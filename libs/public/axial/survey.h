@@ -51,7 +51,7 @@ struct Options {
   // as RestoreColors writes them. Empty: the photographs have the colours. Transparency and black
   // borders are always those of the photographs.
   std::filesystem::path color_folder;
-  bool match_colors = false;  // grey levels, for matching, come from color_folder, too
+  bool match_colors = false;  // grey levels, for matching, come from color_folder, which is set
   // The number of bits that the values of 16-bit photographs use: 8 to 16. 0: as many as the
   // largest value in all photographs needs.
   int bit_depth = 0;
