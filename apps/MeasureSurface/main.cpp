@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measures the surface of a mesh in polygons that were drawn on a map.
 
-#include <algorithm>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "axial/map.h"
 #include "base/context.h"
 #include "base/error.h"
 #include "base/log.h"
@@ -12,9 +14,11 @@
 #include "base/output_lock.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
+#include "geometry/faces.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
 #include "map/area_table.h"
+#include "map/up_direction.h"
 #include "map/world_axes.h"
 #include "scene/check_mesh.h"
 #include "scene/marked_faces.h"
@@ -46,52 +50,82 @@ MapPlace place_of(const Settings& settings) {
   return place;
 }
 
-// The faces that cameras have seen, in coordinates of the map minus `origin`, which is set to a
-// place near the mesh.
+// Turns a mesh whose faces look down. Its lower side is not what a map shows.
+void turn_up(Mesh& mesh, const fs::path& file) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double area = 0;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const Eigen::Vector3d normal = geometry::area_vector(mesh, f);
+    sum += normal;
+    area += normal.norm();
+  }
+  if (!(area > 0) || !map::shows_far_side(Eigen::Vector3d::UnitZ(), sum / area)) return;
+  for (auto& face : mesh.faces) std::swap(face[1], face[2]);
+  log_warning(
+      "{}: its faces are turned down: their other side is measured. Is the mesh inside out, or "
+      "does "
+      "--up point the wrong way?",
+      file.string());
+}
+
+// The mesh without the faces that are marked as unseen, in coordinates of the map minus `origin`,
+// which is set to a place near the mesh.
 Mesh read_mesh(const fs::path& file, const map::WorldAxes& axes, Eigen::Vector3d& origin,
                const Context& context) {
-  context.memory().require(2 * io::bytes_to_read_mesh(file), "reading " + file.string());
+  context.memory().require(io::bytes_to_read_mesh(file), "reading " + file.string());
   const LocalFrame frame = frame_near(io::mesh_place(file).first_vertex);
   Mesh mesh = io::read_shape(file, frame);
   mesh.colors = {};
   naming(file, [&] { check_mesh(mesh); });
-  remove_marked_faces(mesh);
-  if (mesh.faces.empty()) fail_in(file, "has no face that cameras have seen");
+  const std::size_t unseen = remove_marked_faces(mesh);
+  if (unseen > 0) log_info("{} faces are left out: they are marked as unseen", unseen);
+  if (mesh.faces.empty()) fail_in(file, "has no faces, or all are marked as unseen");
   const Eigen::Vector3d at = axes.axes * frame.origin + axes.offset;
   origin = at.array().round();
   for (Eigen::Vector3f& vertex : mesh.vertices)
     vertex = (axes.axes * vertex.cast<double>() + (at - origin)).cast<float>();
+  turn_up(mesh, file);
   log_info("{}: {} vertices, {} faces", file.string(), mesh.vertices.size(), mesh.faces.size());
   return mesh;
 }
 
 std::vector<map::MeasuredArea> measure(const Mesh& mesh, const Eigen::Vector3d& origin,
-                                       const std::vector<map::Area>& areas,
+                                       const std::vector<map::Area>& areas, const fs::path& file,
                                        const Context& context) {
-  context.memory().require(geometry::bytes_of_surface(mesh), "measuring the mesh");
+  context.memory().require(map::AreaMeter::bytes(mesh), "measuring the mesh");
   const map::AreaMeter meter(mesh, origin);
   std::vector<map::MeasuredArea> measured(areas.size());
   ProgressCounter progress(context.stage("Measured polygons"), areas.size());
   parallel_for(areas.size(), [&](std::size_t i) {
-    measured[i] = {areas[i], meter.measure(areas[i])};
+    measured[i] = {areas[i], naming(file, [&] { return meter.measure(areas[i]); })};
     progress.add();
   });
   return measured;
 }
 
+// Warns of polygons that the surface does not fill, or fills more than once.
 void report(const std::vector<map::MeasuredArea>& areas, const fs::path& mesh) {
-  constexpr double kHole = 0.99;
-  std::size_t empty = 0;
+  constexpr double kPart = 0.01;
+  constexpr std::size_t kMostNamed = 5;
+  std::size_t empty = 0, named = 0, odd = 0;
+  const auto warn = [&](const map::MeasuredArea& one, const std::string& what) {
+    ++odd;
+    if (++named <= kMostNamed) log_warning("polygon '{}': {}", one.area.name, what);
+  };
   for (const map::MeasuredArea& one : areas) {
-    const map::AreaMeasures& found = one.measures;
-    if (!(found.planar > 0)) {
-      ++empty;
-      log_warning("polygon '{}': the mesh has no surface there", one.area.name);
-    } else if (found.planar < kHole * found.polygon) {
-      log_warning("polygon '{}': only {:.1f} % of it has a surface", one.area.name,
-                  100 * found.planar / found.polygon);
-    }
+    const double share = one.measures.planar / one.measures.polygon;
+    empty += share > 0 ? 0 : 1;
+    if (!(share > 0))
+      warn(one, "the mesh has no surface there");
+    else if (share < 1 - kPart)
+      warn(one, fmt::format("only {:.1f} % of it has a surface", 100 * share));
+    else if (share > 1 + kPart)
+      warn(one, fmt::format("{:.1f} % of it have a surface: surfaces lie above each other whose "
+                            "lower sides are missing",
+                            100 * share));
   }
+  if (odd > kMostNamed)
+    log_warning("{} more polygons: see planar_m2 and polygon_m2", odd - kMostNamed);
   if (empty == areas.size())
     fail_in(mesh, "has no surface in any polygon: are the coordinates those of the map?");
 }
@@ -112,10 +146,10 @@ int run(int argc, char** argv) {
   const std::vector<map::Area> areas = map::read_areas(settings.areas, place.crs);
   Eigen::Vector3d origin;
   const Mesh mesh = read_mesh(settings.mesh, place.axes, origin, context);
-  const std::vector<map::MeasuredArea> measured = measure(mesh, origin, areas, context);
+  const std::vector<map::MeasuredArea> measured =
+      measure(mesh, origin, areas, settings.areas, context);
   report(measured, settings.mesh);
-  map::write_area_csv(csv, measured, settings.length_sigma);
-  map::write_area_package(package, measured, settings.length_sigma, place.crs);
+  map::write_areas({csv, package}, measured, settings.length_sigma, place.crs);
   log_info("{} polygons measured: {}, {}", measured.size(), csv.string(), package.string());
   return 0;
 }

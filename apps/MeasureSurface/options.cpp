@@ -44,6 +44,8 @@ void convert(const Raw& raw, Options& options) {
   Settings& settings = options.settings;
   settings.output = output_or(settings.output, without_known_extension(settings.mesh) += "_areas",
                               "--output-file");
+  if (settings.output.extension() == ".csv" || settings.output.extension() == ".gpkg")
+    settings.output.replace_extension();
   settings.up = map::parse_up(raw.up, settings.epsg);
   settings.length_sigma = raw.length_sigma / 100;
   if (settings.map.empty()) return;

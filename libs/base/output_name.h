@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The names of output files: one rule for all programs. A known extension of a name is replaced by
 // the extension of the file that is written. Every other dot belongs to the name: the outputs
-// "reef.2024" and "reef.2025" are different files. Exception: the output of MapSurface and
-// CompareSurveys is the begin of the names, and nothing of it is replaced.
+// "reef.2024" and "reef.2025" are different files. Exception: the output of MapSurface,
+// CompareSurveys and MeasureSurface is the begin of the names, and none of these extensions is
+// replaced.
 #pragma once
 
 #include <filesystem>

@@ -2,8 +2,10 @@
 #include "geometry/polygon_pieces.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 
+#include "base/error.h"
 #include "geometry/convex_part.h"
 
 namespace axial::geometry {
@@ -17,7 +19,6 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 
 struct Edge {
   Eigen::Vector2d from, to;  // from.x() <= to.x()
-  std::size_t ring = 0;
 
   double y_at(double x) const {
     return from.y() + (x - from.x()) / (to.x() - from.x()) * (to.y() - from.y());
@@ -26,9 +27,9 @@ struct Edge {
 
 std::vector<Edge> edges_of(std::span<const Ring> rings) {
   std::vector<Edge> edges;
-  for (std::size_t r = 0; r < rings.size(); ++r)
-    for (std::size_t i = 0; i < rings[r].size(); ++i) {
-      Edge edge{rings[r][i], rings[r][(i + 1) % rings[r].size()], r};
+  for (const Ring& ring : rings)
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      Edge edge{ring[i], ring[(i + 1) % ring.size()]};
       if (edge.from == edge.to) continue;
       if (std::pair(edge.from.x(), edge.from.y()) > std::pair(edge.to.x(), edge.to.y()))
         std::swap(edge.from, edge.to);
@@ -53,9 +54,10 @@ std::optional<Eigen::Vector2d> crossing_of(const Edge& one, const Edge& two) {
     return Eigen::Vector2d(one.from + (low + high) / 2 * a);
   }
   const double on_one = cross(between, b) / turn, on_two = cross(between, a) / turn;
-  constexpr double kTouch = 1e-9;  // rounding: edges that touch do not cross
-  const auto is_inside = [](double share) { return share > kTouch && share < 1 - kTouch; };
-  if (!is_inside(on_one) || !is_inside(on_two)) return std::nullopt;
+  const auto is_inside = [](double share, const Eigen::Vector2d& edge) {
+    return std::min(share, 1 - share) * edge.norm() > kTouch;
+  };
+  if (!is_inside(on_one, a) || !is_inside(on_two, b)) return std::nullopt;
   return Eigen::Vector2d(one.from + on_one * a);
 }
 
@@ -68,15 +70,19 @@ void keep(Points& part, Points& spare, const Distance& distance) {
 
 }  // namespace
 
-std::vector<Crossing> crossings_of(std::span<const Ring> rings, std::size_t most) {
+std::vector<Eigen::Vector2d> crossings_of(std::span<const Ring> rings, std::size_t most) {
+  constexpr std::uint64_t kMostPairs = 1'000'000'000;
   const std::vector<Edge> edges = edges_of(rings);
-  std::vector<Crossing> found;
+  std::vector<Eigen::Vector2d> found;
+  std::uint64_t pairs = 0;
   for (std::size_t i = 0; i < edges.size(); ++i)
-    for (std::size_t j = i + 1; j < edges.size() && edges[j].from.x() <= edges[i].to.x(); ++j)
+    for (std::size_t j = i + 1; j < edges.size() && edges[j].from.x() <= edges[i].to.x(); ++j) {
+      if (++pairs > kMostPairs) fail("has too many edges above each other: simplify it");
       if (const auto place = crossing_of(edges[i], edges[j])) {
-        found.push_back({*place, edges[i].ring, edges[j].ring});
+        found.push_back(*place);
         if (found.size() == most) return found;
       }
+    }
   return found;
 }
 
@@ -89,16 +95,19 @@ double PolygonPieces::Trapezoid::high_at(double x) const {
 }
 
 PolygonPieces::PolygonPieces(std::span<const Ring> rings) {
+  constexpr std::size_t kMostPieces = 10'000'000;
   for (const Ring& ring : rings)
     for (const Eigen::Vector2d& corner : ring) lines_.push_back(corner.x());
   std::ranges::sort(lines_);
-  lines_.erase(std::ranges::unique(lines_).begin(), lines_.end());
+  lines_.erase(std::unique(lines_.begin(), lines_.end()), lines_.end());
   const std::vector<Edge> edges = edges_of(rings);
+  std::vector<Edge> across;  // of the strip
+  std::size_t next = 0;
   for (std::size_t strip = 0; strip + 1 < lines_.size(); ++strip) {
     const double left = lines_[strip], right = lines_[strip + 1], middle = (left + right) / 2;
-    std::vector<Edge> across;
-    for (const Edge& edge : edges)
-      if (edge.from.x() <= left && edge.to.x() >= right) across.push_back(edge);
+    std::erase_if(across, [&](const Edge& edge) { return edge.to.x() <= left; });
+    for (; next < edges.size() && edges[next].from.x() <= left; ++next)
+      if (edges[next].to.x() > left) across.push_back(edges[next]);
     std::ranges::sort(across, {}, [&](const Edge& edge) { return edge.y_at(middle); });
     begin_.push_back(pieces_.size());
     for (std::size_t i = 0; i + 1 < across.size(); i += 2) {
@@ -107,6 +116,7 @@ PolygonPieces::PolygonPieces(std::span<const Ring> rings) {
           {left, right, {low.y_at(left), low.y_at(right)}, {high.y_at(left), high.y_at(right)}});
       area_ += (right - left) * (pieces_.back().high - pieces_.back().low).sum() / 2;
     }
+    if (pieces_.size() > kMostPieces) fail("has too many edges above each other: simplify it");
   }
   begin_.push_back(pieces_.size());
 }
@@ -125,12 +135,12 @@ bool PolygonPieces::contains(const Eigen::Vector2d& place) const {
   });
 }
 
-void PolygonPieces::clip(const std::array<Eigen::Vector3d, 3>& corners,
+void PolygonPieces::clip(const std::array<Eigen::Vector3d, 3>& corners, Scratch& scratch,
                          const std::function<void(std::span<const Eigen::Vector3d>)>& use) const {
   const auto [left, right] = std::minmax({corners[0].x(), corners[1].x(), corners[2].x()});
   const auto [low, high] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
   if (begin_.size() < 2 || right < lines_.front() || left > lines_.back()) return;
-  Points part, spare;
+  auto& [part, spare] = scratch;
   for (std::size_t index = strip_at(left); index + 1 < begin_.size() && lines_[index] <= right;
        ++index)
     for (const Trapezoid& piece : strip(index)) {

@@ -15,29 +15,32 @@ namespace axial::geometry {
 using Ring = std::vector<Eigen::Vector2d>;
 
 // Places at which rings cross themselves or each other, or run along each other; at most `most`.
-// Rings may touch or cross in corners. Precondition: the coordinates are finite.
-struct Crossing {
-  Eigen::Vector2d place;
-  std::size_t ring = 0, other = 0;
-};
-std::vector<Crossing> crossings_of(std::span<const Ring> rings, std::size_t most = 1);
+// Rings may touch or cross in corners. Crossings up to kTouch from a corner count as touching.
+// Precondition: the coordinates are finite. Error if more than 1e9 pairs of edges overlap in x.
+inline constexpr double kTouch = 1e-4;  // [m]: rounded coordinates of a point where two rings touch
+std::vector<Eigen::Vector2d> crossings_of(std::span<const Ring> rings, std::size_t most = 1);
 
 // A polygon: the points that lie inside an odd number of rings. So a ring in another ring is a
 // hole, and rings beside each other are parts of one polygon.
 class PolygonPieces {
  public:
   // Precondition: crossings_of() is empty, and the coordinates are finite. Large common offsets of
-  // the coordinates cost digits.
+  // the coordinates cost digits. Error if the polygon has more than 10 million pieces.
   explicit PolygonPieces(std::span<const Ring> rings);
 
   double area() const { return area_; }
   bool contains(const Eigen::Vector2d& place) const;
 
+  // Memory of clip().
+  struct Scratch {
+    std::vector<Eigen::Vector3d> part, spare;
+  };
+
   // Calls `use` for each piece of the triangle above or below the polygon: 3 to 7 corners of a
   // convex polygon in the plane of the triangle, in the triangle's direction. Their union is the
   // whole part, and they overlap in lines only. The numbers of a piece may be those of a triangle
   // without area.
-  void clip(const std::array<Eigen::Vector3d, 3>& corners,
+  void clip(const std::array<Eigen::Vector3d, 3>& corners, Scratch& scratch,
             const std::function<void(std::span<const Eigen::Vector3d>)>& use) const;
 
  private:

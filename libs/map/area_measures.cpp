@@ -6,18 +6,15 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
+#include "base/parallel.h"
 #include "geometry/convex_part.h"
 #include "geometry/faces.h"
 
 namespace axial::map {
-namespace {
-
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 // Sums over the surface, seen from above: of 1, of (x, y, height), and of their products.
-struct Moments {
+struct AreaMoments {
   double area = 0;
   Eigen::Vector3d first = Eigen::Vector3d::Zero();
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
@@ -38,7 +35,11 @@ struct Moments {
   }
 };
 
-HeightPlane fitted(const Moments& moments) {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+HeightPlane fitted(const AreaMoments& moments) {
   const Eigen::Vector3d mean = moments.first / moments.area;
   const Eigen::Matrix3d central = moments.second / moments.area - mean * mean.transpose();
   const Eigen::Vector2d with_height = central.topRightCorner<2, 1>();
@@ -53,9 +54,8 @@ using Points = std::vector<Eigen::Vector3d>;
 
 // The volume between a convex piece of a face and the plane where the piece is above (`side` 1) or
 // below (-1) the plane. Negative for faces that are turned down.
-double volume_beside(const HeightPlane& plane, Corners piece, double side) {
+double volume_beside(const HeightPlane& plane, Corners piece, double side, Points& part) {
   const auto distance = [&](const Eigen::Vector3d& x) { return side * plane.height_of(x); };
-  Points part;
   geometry::convex_part(piece, distance, part);
   double sum = 0;
   for (std::size_t k = 2; k < part.size(); ++k)
@@ -85,13 +85,28 @@ std::vector<Eigen::Vector2d> places_on_rim(std::span<const geometry::Ring> rings
   return places;
 }
 
-// What the pieces of the faces above a polygon add up to.
-struct Sums {
-  Moments moments;
+constexpr int kBinSide = 8,
+              kBins = 128;  // [px] of the grid of FaceBins; bins along the longer side
+
+// The grid of the bins of faces.
+MapGrid grid_of(const Mesh& mesh) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(vertex);
+  const auto extent = static_cast<double>(box.sizes().head<2>().maxCoeff());
+  return grid_around(mesh, {}, extent > 0 ? extent / (kBinSide * kBins) : 1);
+}
+
+}  // namespace
+
+// What the pieces of the faces above a part add up to.
+struct AreaSums {
+  AreaMoments moments;
+  double up = 0, down = 0;  // projected areas of faces that are turned up and down
   double surface = 0, above = 0, below = 0;
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
 
-  void add(Corners piece, const HeightPlane& rim) {
+  // `memory`: for the parts of the piece.
+  void add(Corners piece, const HeightPlane& rim, Points& memory) {
     for (const Eigen::Vector3d& corner : piece) {
       lowest = std::min(lowest, corner.z());
       highest = std::max(highest, corner.z());
@@ -102,14 +117,34 @@ struct Sums {
       const Eigen::Vector3d twice =
           (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0));
       surface += twice.norm() / 2;
+      (twice.z() > 0 ? up : down) += std::abs(twice.z()) / 2;
       moments.add(twice.z() / 2, corners);
     }
-    above += volume_beside(rim, piece, 1);
-    below += volume_beside(rim, piece, -1);
+    above += volume_beside(rim, piece, 1, memory);
+    below += volume_beside(rim, piece, -1, memory);
   }
+
+  void add(const AreaSums& other) {
+    moments.area += other.moments.area;
+    moments.first += other.moments.first;
+    moments.second += other.moments.second;
+    up += other.up;
+    down += other.down;
+    surface += other.surface;
+    above += other.above;
+    below += other.below;
+    lowest = std::min(lowest, other.lowest);
+    highest = std::max(highest, other.highest);
+  }
+
+  // Whether faces are above the polygon, and more of them turned up than down, by more than
+  // rounding.
+  bool has_surface() const { return up - down > 1e-6 * (up + down); }
 };
 
-}  // namespace
+double AreaMeasures::rugosity() const {
+  return std::isfinite(plane.level) ? surface / planar : plane.level;
+}
 
 double AreaMeasures::rugosity_on_slope() const {
   return rugosity() / std::sqrt(1 + plane.gradient.squaredNorm());
@@ -120,61 +155,100 @@ double AreaMeasures::roughness() const {
 }
 
 double AreaMeasures::slope_degrees() const {
-  return std::atan(plane.gradient.norm()) * kDegrees;
+  return std::isfinite(plane.level) ? std::atan(plane.gradient.norm()) * kDegrees : plane.level;
 }
 
 double AreaMeasures::aspect_degrees() const {
+  constexpr double kLevel = 1e-6;  // vertices are floats
+  if (plane.gradient.norm() < kLevel) return std::numeric_limits<double>::quiet_NaN();
   const double angle = std::atan2(-plane.gradient.x(), -plane.gradient.y()) * kDegrees;
   return angle < 0 ? angle + 360 : angle;
 }
 
 AreaMeter::AreaMeter(const Mesh& mesh, const Eigen::Vector3d& origin)
-    : mesh_(mesh), origin_(origin), surface_(mesh) {
+    : mesh_(mesh),
+      origin_(origin),
+      surface_(mesh),
+      grid_(grid_of(mesh)),
+      bins_(mesh, {}, grid_, kBinSide) {
   top_ = -std::numeric_limits<double>::infinity();
   for (const Eigen::Vector3f& vertex : mesh.vertices)
     top_ = std::max(top_, static_cast<double>(vertex.z()));
   top_ += 1;
 }
 
+std::uint64_t AreaMeter::bytes(const Mesh& mesh) {
+  return geometry::bytes_of_surface(mesh) + FaceBins::bytes(mesh, {}, grid_of(mesh), kBinSide);
+}
+
 AreaMeasures AreaMeter::measure(const Area& area) const {
-  std::vector<geometry::Ring> rings = area.rings;
-  Eigen::AlignedBox2d box;
-  for (geometry::Ring& ring : rings)
-    for (Eigen::Vector2d& corner : ring) {
-      corner -= origin_.head<2>();
-      box.extend(corner);
-    }
-  const geometry::PolygonPieces pieces(rings);
   AreaMeasures found;
-  found.polygon = pieces.area();
-  const HeightPlane rim = rim_of(rings, found.rim);
-  Sums sums;
-  for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
-    const auto corners = geometry::corners_of(mesh_, f);
-    const Eigen::AlignedBox2d face(
-        corners[0].head<2>().cwiseMin(corners[1].head<2>()).cwiseMin(corners[2].head<2>()),
-        corners[0].head<2>().cwiseMax(corners[1].head<2>()).cwiseMax(corners[2].head<2>()));
-    if (box.intersects(face)) pieces.clip(corners, [&](Corners piece) { sums.add(piece, rim); });
-  }
-  if (!(sums.moments.area > 0)) return found;
-  const HeightPlane plane = fitted(sums.moments);
+  AreaSums sums;
+  double rims = 0;
+  for (const auto& part : area.parts) rims += add_part(part, found, sums);
+  found.rim = rims / static_cast<double>(area.parts.size());
+  if (!sums.has_surface()) return found;
   found.planar = sums.moments.area;
   found.surface = sums.surface;
-  found.plane = plane;
+  found.plane = fitted(sums.moments);
   found.plane.middle += origin_.head<2>();
   found.plane.level += origin_.z();
   found.lowest = sums.lowest + origin_.z();
   found.highest = sums.highest + origin_.z();
-  const bool has_rim = std::isfinite(rim.level);
-  found.above = has_rim ? sums.above : std::numeric_limits<double>::quiet_NaN();
-  found.below = has_rim ? sums.below : std::numeric_limits<double>::quiet_NaN();
+  found.above = sums.above;
+  found.below = sums.below;
   return found;
+}
+
+double AreaMeter::add_part(std::span<const geometry::Ring> rings, AreaMeasures& found,
+                           AreaSums& sums) const {
+  std::vector<geometry::Ring> local(rings.begin(), rings.end());
+  Eigen::AlignedBox2d box;
+  for (geometry::Ring& ring : local)
+    for (Eigen::Vector2d& corner : ring) {
+      corner -= origin_.head<2>();
+      box.extend(corner);
+    }
+  const geometry::PolygonPieces pieces(local);
+  found.polygon += pieces.area();
+  double share = 0;
+  const HeightPlane rim = rim_of(local, share);
+  const std::vector<std::uint32_t> faces = faces_in(box);
+  constexpr std::size_t kChunk = 1 << 15;
+  std::vector<AreaSums> chunks((faces.size() + kChunk - 1) / kChunk);
+  parallel_for(chunks.size(), [&](std::size_t chunk) {
+    geometry::PolygonPieces::Scratch scratch;
+    Points memory;
+    const std::size_t end = std::min(faces.size(), (chunk + 1) * kChunk);
+    for (std::size_t i = chunk * kChunk; i < end; ++i)
+      pieces.clip(geometry::corners_of(mesh_, faces[i]), scratch,
+                  [&](Corners piece) { chunks[chunk].add(piece, rim, memory); });
+  });
+  for (const AreaSums& chunk : chunks) sums.add(chunk);
+  if (!std::isfinite(rim.level)) sums.above = sums.below = rim.level;
+  return share;
+}
+
+std::vector<std::uint32_t> AreaMeter::faces_in(const Eigen::AlignedBox2d& box) const {
+  std::vector<std::uint32_t> faces;
+  for (std::size_t bin = 0; bin < bins_.blocks(); ++bin) {
+    const cv::Rect at = bins_.pixels(bin);
+    const Eigen::AlignedBox2d of_bin(
+        Eigen::Vector2d(grid_.left + at.x * grid_.pixel, grid_.top - at.br().y * grid_.pixel),
+        Eigen::Vector2d(grid_.left + at.br().x * grid_.pixel, grid_.top - at.y * grid_.pixel));
+    if (!box.intersects(of_bin)) continue;
+    const auto in_bin = bins_.faces(bin);
+    faces.insert(faces.end(), in_bin.begin(), in_bin.end());
+  }
+  std::ranges::sort(faces);
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return faces;
 }
 
 HeightPlane AreaMeter::rim_of(std::span<const geometry::Ring> rings, double& share) const {
   constexpr int kPlaces = 2000;
   constexpr double kLeastShare = 0.5;
-  Moments moments;
+  AreaMoments moments;
   int met = 0;
   const std::vector<Eigen::Vector2d> places = places_on_rim(rings, kPlaces);
   for (const Eigen::Vector2d& place : places)
@@ -186,9 +260,7 @@ HeightPlane AreaMeter::rim_of(std::span<const geometry::Ring> rings, double& sha
       ++met;
     }
   share = static_cast<double>(met) / static_cast<double>(places.size());
-  if (share < kLeastShare)
-    return {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
-            std::numeric_limits<double>::quiet_NaN()};
+  if (share < kLeastShare) return {};
   return fitted(moments);
 }
 

@@ -2,10 +2,14 @@
 // Sizes and shape of the surface above a polygon.
 #pragma once
 
+#include <Eigen/Geometry>
+#include <limits>
 #include <span>
+#include <vector>
 
 #include "geometry/surface.h"
 #include "map/areas.h"
+#include "map/surface_block.h"
 #include "scene/mesh.h"
 
 namespace axial::map {
@@ -13,8 +17,8 @@ namespace axial::map {
 // A plane as heights: height = level + gradient * ((x, y) - middle).
 struct HeightPlane {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero(), gradient = Eigen::Vector2d::Zero();
-  double level = 0;
-  double variance = 0;  // of the heights to which it was fitted, from the plane
+  double level = std::numeric_limits<double>::quiet_NaN();
+  double variance = level;  // of the heights to which it was fitted, from the plane
 
   double height_of(const Eigen::Vector3d& x) const {
     return x.z() - level - gradient.dot(x.head<2>() - middle);
@@ -22,42 +26,55 @@ struct HeightPlane {
 };
 
 // How large and how rough a part of a surface is. Lengths are in metres; x, y and height are those
-// of the map.
+// of the map. Without a surface, all members but the areas and `rim` are NaN, and so are the
+// results of the functions.
 struct AreaMeasures {
   double polygon = 0;  // area of the polygon [m^2]
   // Area of the polygon in which there is a surface, seen from above [m^2].
   double planar = 0;
-  double surface = 0;              // area of the surface itself, also of overhanging parts [m^2]
-  HeightPlane plane;               // fits the heights best
-  double lowest = 0, highest = 0;  // [m]
-  // Between the surface and the plane through the surface at the rim of the polygon [m^3].
-  double above = 0, below = 0;
+  double surface = 0;  // area of the surface itself, also of overhanging parts [m^2]
+  HeightPlane plane;   // fits the heights best
+  double lowest = plane.level, highest = plane.level;  // [m]
+  // Between the surface and the plane through the surface at the rim of each part of the polygon
+  // [m^3].
+  double above = plane.level, below = plane.level;
   double rim = 0;  // the share of the rim at which there is a surface
 
-  double rugosity() const { return surface / planar; }
+  double rugosity() const;
   // Surface over the area of the fitted plane: without the slope.
   double rugosity_on_slope() const;
   double roughness() const;  // standard deviation of the heights from the plane [m]
   double slope_degrees() const;
-  // The direction in which the plane falls, clockwise from the map's y axis, 0 to 360 degrees.
+  // The direction in which the plane falls, clockwise from the map's y axis, from 0 to 360 degrees.
+  // NaN for a level plane.
   double aspect_degrees() const;
 };
+
+struct AreaSums;  // of area_measures.cpp
 
 // Measures surfaces above polygons. The coordinates of the mesh are those of the map minus
 // `origin`.
 class AreaMeter {
  public:
-  // `mesh` must outlive the object. Errors as for geometry::Surface.
+  // `mesh` must outlive the object; its faces are turned up. Errors as for geometry::Surface.
   AreaMeter(const Mesh& mesh, const Eigen::Vector3d& origin);
 
-  // All members but `polygon` are 0 if no surface is above the polygon. Parts are exact up to
-  // rounding: faces are clipped at the polygon. Faces that are turned down take from `planar` and
-  // from the volumes what the faces above them add, so that overhanging surfaces count once. The
-  // rim is looked at from above in 2000 places. Without a surface at half of them, `above` and
-  // `below` are NaN.
+  // The memory [bytes] of an AreaMeter of `mesh` while it is made.
+  static std::uint64_t bytes(const Mesh& mesh);
+
+  // Faces are clipped at the polygon, so that all numbers are exact up to rounding. Faces that are
+  // turned down take from `planar` and from the volumes what the faces above and below them add:
+  // overhanging surfaces count once if their lower side is there. The rim of a part is looked at
+  // from above in 2000 places. If less than half of them has a surface, `above` and `below` are
+  // NaN. The result does not depend on the number of threads. Errors as for
+  // geometry::PolygonPieces.
   AreaMeasures measure(const Area& area) const;
 
  private:
+  // The faces that may be above a box, in increasing order.
+  std::vector<std::uint32_t> faces_in(const Eigen::AlignedBox2d& box) const;
+  // Adds the faces above a part of a polygon. Returns the share of its rim that has a surface.
+  double add_part(std::span<const geometry::Ring> rings, AreaMeasures& found, AreaSums& sums) const;
   // The plane through the surface at the rim; its level is NaN if less than half of the rim has a
   // surface. `share`: of the rim.
   HeightPlane rim_of(std::span<const geometry::Ring> rings, double& share) const;
@@ -65,6 +82,8 @@ class AreaMeter {
   const Mesh& mesh_;
   Eigen::Vector3d origin_;
   geometry::Surface surface_;
+  MapGrid grid_;
+  FaceBins bins_;
   double top_ = 0;  // above the highest vertex
 };
 

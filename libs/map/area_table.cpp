@@ -26,7 +26,7 @@ struct Column {
 };
 
 constexpr Column kColumns[] = {
-    {"polygon_m2", [](const AreaMeasures& m) { return m.polygon; }, 6},
+    {"polygon_m2", [](const AreaMeasures& m) { return m.polygon; }, 6, 2},
     {"planar_m2", [](const AreaMeasures& m) { return m.planar; }, 6, 2},
     {"surface_m2", [](const AreaMeasures& m) { return m.surface; }, 6, 2},
     {"rugosity", [](const AreaMeasures& m) { return m.rugosity(); }, 5},
@@ -70,14 +70,18 @@ std::string quoted(const std::string& text) {
 }
 
 Geometry geometry_of(const Area& area) {
-  Geometry polygon(OGR_G_CreateGeometry(wkbPolygon));
-  for (const geometry::Ring& ring : area.rings) {
-    const OGRGeometryH line = OGR_G_CreateGeometry(wkbLinearRing);
-    for (const Eigen::Vector2d& corner : ring) OGR_G_AddPoint_2D(line, corner.x(), corner.y());
-    OGR_G_CloseRings(line);
-    OGR_G_AddGeometryDirectly(polygon.get(), line);
+  Geometry parts(OGR_G_CreateGeometry(wkbMultiPolygon));
+  for (const auto& rings : area.parts) {
+    const OGRGeometryH polygon = OGR_G_CreateGeometry(wkbPolygon);
+    for (const geometry::Ring& ring : rings) {
+      const OGRGeometryH line = OGR_G_CreateGeometry(wkbLinearRing);
+      for (const Eigen::Vector2d& corner : ring) OGR_G_AddPoint_2D(line, corner.x(), corner.y());
+      OGR_G_CloseRings(line);
+      OGR_G_AddGeometryDirectly(polygon, line);
+    }
+    OGR_G_AddGeometryDirectly(parts.get(), polygon);
   }
-  return polygon;
+  return parts;
 }
 
 // Sets an option of GDAL for this thread while the object exists.
@@ -93,11 +97,6 @@ class GdalSetting {
  private:
   const char* key_;
 };
-
-bool add_field(OGRLayerH layer, const std::string& name, OGRFieldType type) {
-  const Owned<OGRFieldDefnH, OGR_Fld_Destroy> field(OGR_Fld_Create(name.c_str(), type));
-  return OGR_L_CreateField(layer, field.get(), TRUE) == OGRERR_NONE;
-}
 
 bool add_feature(OGRLayerH layer, const MeasuredArea& one, std::span<const Cell> cells) {
   const Feature feature(OGR_F_Create(OGR_L_GetLayerDefn(layer)));
@@ -118,22 +117,19 @@ void write_package(const fs::path& file, std::span<const MeasuredArea> areas, do
   errors.require_written(data != nullptr, file);
   const System system(crs.empty() ? nullptr : OSRNewSpatialReference(crs.c_str()));
   const OGRLayerH layer =
-      GDALDatasetCreateLayer(data.get(), "areas", system.get(), wkbPolygon, nullptr);
+      GDALDatasetCreateLayer(data.get(), "areas", system.get(), wkbMultiPolygon, nullptr);
   errors.require_written(layer != nullptr, file);
   bool works = add_field(layer, "name", OFTString);
   if (!areas.empty())
     for (const Cell& cell : cells_of(areas.front().measures, length_sigma))
-      works = works && add_field(layer, cell.name, OFTReal);
+      works = works && add_field(layer, cell.name.c_str(), OFTReal);
   for (const MeasuredArea& one : areas)
     works = works && add_feature(layer, one, cells_of(one.measures, length_sigma));
   data.reset();
   errors.require_written(works, file);
 }
 
-}  // namespace
-
-void write_area_csv(const fs::path& file, std::span<const MeasuredArea> areas,
-                    double length_sigma) {
+std::string csv_of(std::span<const MeasuredArea> areas, double length_sigma) {
   std::string text;
   for (const MeasuredArea& one : areas) {
     const std::vector<Cell> cells = cells_of(one.measures, length_sigma);
@@ -147,13 +143,17 @@ void write_area_csv(const fs::path& file, std::span<const MeasuredArea> areas,
       text += std::isfinite(cell.value) ? fmt::format(",{:.{}f}", cell.value, cell.digits) : ",";
     text += "\n";
   }
-  write_atomically(file, text);
+  return text;
 }
 
-void write_area_package(const fs::path& file, std::span<const MeasuredArea> areas,
-                        double length_sigma, const std::string& crs) {
-  write_atomically(
-      file, [&](const fs::path& temporary) { write_package(temporary, areas, length_sigma, crs); });
+}  // namespace
+
+void write_areas(const AreaFiles& files, std::span<const MeasuredArea> areas, double length_sigma,
+                 const std::string& crs) {
+  write_together({files.csv, files.package}, [&](const std::vector<fs::path>& temporaries) {
+    write_atomically(temporaries[0], csv_of(areas, length_sigma));
+    write_package(temporaries[1], areas, length_sigma, crs);
+  });
 }
 
 }  // namespace axial::map

@@ -16,15 +16,16 @@ struct MeasuredArea {
   AreaMeasures measures;
 };
 
-// Writes a row for each area, as CSV in UTF-8 with a header (docs/formats.md), and as GeoPackage
+// Writes a row for each area, as CSV in UTF-8 with a header (docs/measure.md), and as GeoPackage
 // with the polygons. A number that is not known is left empty. `length_sigma`: the standard
 // deviation of a length, as a share of it; 0: not known, and columns of standard deviations are
 // left out. `crs`: WKT of the coordinates; empty: none. The GeoPackage states 2000-01-01 as the
-// date of its last change, so that the same areas give the same bytes. Error that names the file if
-// it cannot be written.
-void write_area_csv(const std::filesystem::path& file, std::span<const MeasuredArea> areas,
-                    double length_sigma);
-void write_area_package(const std::filesystem::path& file, std::span<const MeasuredArea> areas,
-                        double length_sigma, const std::string& crs);
+// date of its last change, so that the same areas give the same bytes. Both files are written
+// together (write_together()). Error that names a file that cannot be written.
+struct AreaFiles {
+  std::filesystem::path csv, package;
+};
+void write_areas(const AreaFiles& files, std::span<const MeasuredArea> areas, double length_sigma,
+                 const std::string& crs);
 
 }  // namespace axial::map

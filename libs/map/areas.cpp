@@ -4,9 +4,9 @@
 #include <ogr_api.h>
 #include <ogr_srs_api.h>
 
-#include <algorithm>
-#include <array>
-#include <cctype>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "private/gdal_calls.h"
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool has_polygons(OGRLayerH layer) {
-  const OGRwkbGeometryType type = wkbFlatten(OGR_L_GetGeomType(layer));
+  const OGRwkbGeometryType type = OGR_GT_GetLinear(wkbFlatten(OGR_L_GetGeomType(layer)));
   return type == wkbPolygon || type == wkbMultiPolygon || type == wkbUnknown;
 }
 
@@ -52,67 +52,89 @@ Conversion conversion_to(const std::string& crs, OGRLayerH layer, const fs::path
   return conversion;
 }
 
-// The index of the field that names a feature; -1: none.
-int name_field(OGRLayerH layer) {
-  const OGRFeatureDefnH fields = OGR_L_GetLayerDefn(layer);
-  for (const char* wanted : {"name", "label", "id"})
-    if (const int index = OGR_FD_GetFieldIndex(fields, wanted); index >= 0) return index;
-  return -1;
+geometry::Ring ring_of(OGRGeometryH line) {
+  geometry::Ring ring;
+  for (int k = 0; k < OGR_G_GetPointCount(line); ++k) {
+    const Eigen::Vector2d corner(OGR_G_GetX(line, k), OGR_G_GetY(line, k));
+    if (ring.empty() || corner != ring.back()) ring.push_back(corner);
+  }
+  if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
+  return ring;
 }
 
-// Adds the rings of a polygon, or of all parts of several.
-void add_rings(OGRGeometryH geometry, std::vector<geometry::Ring>& rings) {
-  const int parts = OGR_G_GetGeometryCount(geometry);
+// Adds a polygon, or all parts of several.
+void add_parts(OGRGeometryH geometry, Area& area) {
+  const int count = OGR_G_GetGeometryCount(geometry);
   if (wkbFlatten(OGR_G_GetGeometryType(geometry)) == wkbMultiPolygon) {
-    for (int i = 0; i < parts; ++i) add_rings(OGR_G_GetGeometryRef(geometry, i), rings);
+    for (int i = 0; i < count; ++i) add_parts(OGR_G_GetGeometryRef(geometry, i), area);
     return;
   }
-  for (int i = 0; i < parts; ++i) {
-    const OGRGeometryH line = OGR_G_GetGeometryRef(geometry, i);
-    geometry::Ring ring;
-    for (int k = 0; k < OGR_G_GetPointCount(line); ++k) {
-      const Eigen::Vector2d corner(OGR_G_GetX(line, k), OGR_G_GetY(line, k));
-      if (ring.empty() || corner != ring.back()) ring.push_back(corner);
-    }
-    if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
-    rings.push_back(std::move(ring));
-  }
+  std::vector<geometry::Ring> part;
+  for (int i = 0; i < count; ++i) part.push_back(ring_of(OGR_G_GetGeometryRef(geometry, i)));
+  if (!part.empty()) area.parts.push_back(std::move(part));
 }
 
 void check_rings(const Area& area, const fs::path& file) {
-  if (area.rings.empty()) fail_in(file, "polygon '{}' is empty", area.name);
-  for (const geometry::Ring& ring : area.rings) {
-    if (ring.size() < 3)
-      fail_in(file, "polygon '{}' has a ring with fewer than three corners", area.name);
-    for (const Eigen::Vector2d& corner : ring)
-      if (!corner.allFinite())
-        fail_in(file, "polygon '{}' has a coordinate that is not finite", area.name);
-  }
-  const auto crossings = geometry::crossings_of(area.rings);
-  if (crossings.empty()) return;
-  const Eigen::Vector2d& at = crossings.front().place;
-  fail_in(file, "polygon '{}' crosses itself at ({:.3f}, {:.3f})", area.name, at.x(), at.y());
+  if (area.parts.empty()) fail_in(file, "polygon '{}' is empty", area.name);
+  for (const auto& part : area.parts)
+    for (const geometry::Ring& ring : part) {
+      if (ring.size() < 3)
+        fail_in(file, "polygon '{}' has a ring with fewer than three corners", area.name);
+      for (const Eigen::Vector2d& corner : ring)
+        if (!corner.allFinite())
+          fail_in(file, "polygon '{}' has a coordinate that is not finite", area.name);
+    }
 }
 
-std::string name_of(OGRFeatureH feature, int field, std::size_t number) {
-  const std::string name = field < 0 ? "" : OGR_F_GetFieldAsString(feature, field);
-  return name.empty() ? std::to_string(number) : name;
+// A place on the ring that is no corner.
+Eigen::Vector2d place_on(const geometry::Ring& ring) {
+  return (ring[0] + ring[1]) / 2;
+}
+
+void check_places(const Area& area, const fs::path& file) {
+  std::vector<geometry::Ring> all;
+  for (const auto& part : area.parts) all.insert(all.end(), part.begin(), part.end());
+  try {
+    if (const auto crossings = geometry::crossings_of(all); !crossings.empty())
+      fail("crosses itself at ({:.3f}, {:.3f})", crossings[0].x(), crossings[0].y());
+    for (const auto& part : area.parts) {
+      const geometry::PolygonPieces pieces(part);
+      for (const auto& other : area.parts)
+        if (&other != &part && pieces.contains(place_on(other.front())))
+          fail("has a part in another part");
+    }
+  } catch (const Error& error) {
+    fail_in(file, "polygon '{}' {}", area.name, error.what());
+  }
+}
+
+std::string name_of(OGRFeatureH feature, std::size_t number) {
+  for (const char* field : {"name", "label", "id"}) {
+    const int index = OGR_F_GetFieldIndex(feature, field);
+    const std::string name = index < 0 ? "" : OGR_F_GetFieldAsString(feature, index);
+    if (!name.empty()) return name;
+  }
+  return std::to_string(number);
 }
 
 Area area_of(OGRFeatureH feature, std::string name, OGRCoordinateTransformationH conversion,
              const fs::path& file) {
   Area area{std::move(name), {}};
   const OGRGeometryH stored = OGR_F_GetGeometryRef(feature);
-  const OGRwkbGeometryType type =
-      stored == nullptr ? wkbNone : wkbFlatten(OGR_G_GetGeometryType(stored));
+  if (stored == nullptr) fail_in(file, "feature '{}' has no geometry", area.name);
+  const OGRwkbGeometryType type = OGR_GT_GetLinear(wkbFlatten(OGR_G_GetGeometryType(stored)));
   if (type != wkbPolygon && type != wkbMultiPolygon)
-    fail_in(file, "feature '{}' is no polygon, but {}", area.name,
-            type == wkbNone ? "has no geometry" : OGRGeometryTypeToName(type));
-  const Geometry geometry(OGR_G_Clone(stored));
+    fail_in(file, "feature '{}' is no polygon, but {}", area.name, OGRGeometryTypeToName(type));
+  const Geometry geometry(OGR_G_GetLinearGeometry(stored, 0, nullptr));
   if (conversion != nullptr && OGR_G_Transform(geometry.get(), conversion) != OGRERR_NONE)
-    fail_in(file, "polygon '{}' cannot be converted to the coordinates of the map", area.name);
-  add_rings(geometry.get(), area.rings);
+    fail_in(file,
+            "polygon '{}' cannot be converted to the coordinates of the map: are its coordinates "
+            "in another system than the file states? A GeoJSON file without \"crs\" has degrees of "
+            "WGS 84",
+            area.name);
+  add_parts(geometry.get(), area);
   check_rings(area, file);
+  check_places(area, file);
   return area;
 }
 
@@ -125,12 +147,11 @@ std::vector<Area> read_areas(const fs::path& file, const std::string& crs) {
   errors.require_vectors_read(data != nullptr, file);
   const OGRLayerH layer = layer_of(data.get(), file);
   const Conversion conversion = conversion_to(crs, layer, file);
-  const int field = name_field(layer);
   std::vector<Area> areas;
   OGR_L_ResetReading(layer);
   while (const Feature feature{OGR_L_GetNextFeature(layer)})
-    areas.push_back(area_of(feature.get(), name_of(feature.get(), field, areas.size() + 1),
-                            conversion.get(), file));
+    areas.push_back(
+        area_of(feature.get(), name_of(feature.get(), areas.size() + 1), conversion.get(), file));
   errors.require_vectors_read(true, file);
   if (areas.empty()) fail_in(file, "has no polygon");
   return areas;

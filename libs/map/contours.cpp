@@ -8,13 +8,13 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
-#include <memory>
 #include <string>
 
 #include "base/error.h"
 #include "map/geotiff.h"
 #include "map/stated_kind.h"
 #include "private/gdal_calls.h"
+#include "private/ogr_handles.h"
 
 namespace axial::map {
 namespace {
@@ -48,12 +48,8 @@ void write_contours(const std::filesystem::path& heights, double interval,
   const OGRLayerH layer = GDALDatasetCreateLayer(
       file.get(), "contours", GDALGetSpatialRef(map.get()), wkbLineString, layer_options.list());
   errors.require_written(layer != nullptr, path);
-  const auto add_field = [&](const char* name, OGRFieldType type) {
-    const std::unique_ptr<std::remove_pointer_t<OGRFieldDefnH>, void (*)(OGRFieldDefnH)> field(
-        OGR_Fld_Create(name, type), OGR_Fld_Destroy);
-    return OGR_L_CreateField(layer, field.get(), TRUE) == OGRERR_NONE;
-  };
-  errors.require_written(add_field("ID", OFTInteger) && add_field("height", OFTReal), path);
+  errors.require_written(add_field(layer, "ID", OFTInteger) && add_field(layer, "height", OFTReal),
+                         path);
   const GdalOptions options{{"LEVEL_INTERVAL", fmt::format("{}", interval)},
                             {"ID_FIELD", "0"},
                             {"ELEV_FIELD", "1"},

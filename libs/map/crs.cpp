@@ -3,20 +3,17 @@
 #include <ogr_srs_api.h>
 
 #include <cmath>
-#include <memory>
-#include <type_traits>
 
 #include "base/error.h"
 #include "map/frame.h"
 #include "private/gdal_calls.h"
+#include "private/ogr_handles.h"
 
 namespace axial::map {
 
 std::string crs_of_epsg(int code) {
   const GdalErrors errors;
-  const auto destroy = [](OGRSpatialReferenceH system) { OSRDestroySpatialReference(system); };
-  const std::unique_ptr<std::remove_pointer_t<OGRSpatialReferenceH>, decltype(destroy)> system(
-      OSRNewSpatialReference(nullptr), destroy);
+  const System system(OSRNewSpatialReference(nullptr));
   if (OSRImportFromEPSG(system.get(), code) != OGRERR_NONE)
     fail("{} {}: is no coordinate reference system that PROJ knows", setting("epsg"), code);
   if (!OSRIsProjected(system.get()) ||

@@ -5,10 +5,11 @@ import contextlib
 import csv
 import io
 import json
+import math
 import sqlite3
 
 from programs import files_below, main, write
-from worlds import Wall
+from worlds import Wall, turned, wall
 
 
 def polygons(**rings):
@@ -45,7 +46,8 @@ class Tables(MeasureTest):
             self.assertAlmostEqual(float(plot[name]), 0.12, places=5, msg=name)
         self.assertAlmostEqual(float(plot["sigma_surface_m2"]), 2 * 0.005 * 0.12, places=6)
         self.assertAlmostEqual(float(plot["rugosity"]), 1, places=4)
-        self.assertEqual((far["polygon_m2"], far["planar_m2"], far["rugosity"]), ("1.000000", "0.000000", ""))
+        self.assertEqual({name for name, value in far.items() if value and not name.startswith("sigma")},
+                         {"name", "polygon_m2", "planar_m2", "surface_m2", "rim_share"})
         with contextlib.closing(sqlite3.connect(self.path("work", "measured.gpkg"))) as table:
             found = table.execute("SELECT name, rugosity, planar_m2 FROM areas ORDER BY fid").fetchall()
         self.assertEqual([row[0] for row in found], ["plot", "far"])
@@ -59,12 +61,36 @@ class Tables(MeasureTest):
         self.assertEqual((self.at("measured.csv"), self.at("measured.gpkg")), first)
 
     def test_polygons_lie_on_the_map(self):
-        """With another direction of the heights, the wall stands on its edge in the map."""
+        """A slope in UTM coordinates, without a map."""
+        east, north = 500000, 2500000
+        slope = lambda x, y: 0.5 * x + 0.25 * y - 20
+        corners = [(x, y) for y in (-1, 1) for x in (-1, 1)]
+        self.put([(x, y, slope(x, y)) for x, y in corners], [(0, 1, 3), (0, 3, 2)],
+                 comments=f"comment geo_offset {east} {north} 0\n")
+        write(self.path("work", "utm.geojson"), polygons(a=box(east + 0.1, north + 0.2, east + 0.5, north + 0.8)))
+        self.succeeds("MeasureSurface", "-w", self.work, "-i", self.mesh, "--areas", "utm.geojson", "-o", "measured.csv")
+        row = self.rows()["a"]
+        self.assertAlmostEqual(float(row["planar_m2"]), 0.24, places=5)
+        self.assertAlmostEqual(float(row["lowest_m"]), slope(0.1, 0.2), places=3)
+        self.assertAlmostEqual(float(row["highest_m"]), slope(0.5, 0.8), places=3)
+        self.assertAlmostEqual(float(row["mean_height_m"]), slope(0.3, 0.5), places=3)
+        self.assertAlmostEqual(float(row["aspect_degrees"]), 180 + math.degrees(math.atan2(0.5, 0.25)), places=1)
+
+    def test_a_mesh_that_is_inside_out_is_turned(self):
         self.succeeds(*self.measure())
-        flat = self.rows()["plot"]
-        self.succeeds("MeasureSurface", "-w", self.work, "-i", self.mesh, "--areas", "plots.geojson", "--up", "0,0,-1",
-                      "-o", "measured")
-        self.assertEqual(self.rows()["plot"], flat)
+        right = self.rows()["plot"]
+        vertices, faces = wall()
+        self.put(vertices, turned(faces))
+        self.assertIn("its faces are turned down", self.succeeds(*self.measure()).stdout)
+        self.assertEqual(self.rows()["plot"], right)
+
+    def test_the_map_states_the_axes(self):
+        """The map's heights are the world's -z, so that its y is the world's -y."""
+        self.put([(x, y, 1 + 0.5 * y) for y in (-1, 1) for x in (-1, 1)], [(0, 3, 1), (0, 2, 3)])
+        write(self.path("work", "north.geojson"), polygons(north=box(-0.1, 0.2, 0.1, 0.6)))
+        self.succeeds(*self.measure(areas="north.geojson"))
+        row = self.rows()["north"]
+        self.assertAlmostEqual(float(row["mean_height_m"]), -(1 - 0.5 * 0.4), places=4)
 
 
 class Errors(MeasureTest):

@@ -14,9 +14,9 @@ import tempfile
 import unittest
 
 BUILD, SOURCE, VERSION = sys.argv[1:4]
-PROGRAMS = ["AlignModel", "CalibrateHousing", "CompareSurveys", "DensifyPointCloud",
-            "EvaluateReconstruction", "ExtractFrames", "FindTargets", "InterfaceCOLMAP", "MapSurface", "MeasureSurface",
-            "ReconstructMesh", "RefineMesh", "RefinePoses", "ReproducePaper", "RestoreColors", "SimulateUnderwater", "TextureMesh",
+PROGRAMS = ["AlignModel", "CalibrateHousing", "CompareSurveys", "DensifyPointCloud", "EvaluateReconstruction",
+            "ExtractFrames", "FindTargets", "InterfaceCOLMAP", "MapSurface", "MeasureSurface", "ReconstructMesh",
+            "RefineMesh", "RefinePoses", "ReproducePaper", "RestoreColors", "SimulateUnderwater", "TextureMesh",
             "TransformScene", "ViewScene"]
 
 

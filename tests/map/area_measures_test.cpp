@@ -30,10 +30,10 @@ Mesh graph(int steps, const std::function<double(double, double)>& height) {
 }
 
 Area disc(const Eigen::Vector2d& centre, double radius, int corners = 720) {
-  Area area{"disc", {{}}};
+  Area area{"disc", {{{}}}};
   for (int i = 0; i < corners; ++i) {
     const double angle = 2 * kPi * i / corners;
-    area.rings[0].push_back(centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    area.parts[0][0].push_back(centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
   }
   return area;
 }
@@ -41,14 +41,13 @@ Area disc(const Eigen::Vector2d& centre, double radius, int corners = 720) {
 TEST(AreaMeasures, OfAPlaneAreExact) {
   const Mesh mesh = graph(37, [](double x, double y) { return 0.75 * x - 0.5 * y + 0.25; });
   const Eigen::Vector3d origin(500000, 4000000, -20);
-  const AreaMeasures found =
-      AreaMeter(mesh, origin)
-          .measure({"square",
-                    {{{499999.5, 3999999.5},
-                      {500000.5, 3999999.5},
-                      {500000.5, 4000000.5},
-                      {499999.5, 4000000.5}},
-                     {{499999.9, 4000000}, {500000.1, 4000000}, {500000, 4000000.2}}}});
+  const Area square{"square",
+                    {{{{499999.5, 3999999.5},
+                       {500000.5, 3999999.5},
+                       {500000.5, 4000000.5},
+                       {499999.5, 4000000.5}},
+                      {{499999.9, 4000000}, {500000.1, 4000000}, {500000, 4000000.2}}}}};
+  const AreaMeasures found = AreaMeter(mesh, origin).measure(square);
   const double steepness = std::sqrt(1 + 0.75 * 0.75 + 0.5 * 0.5);
   // Vertices are floats, and coordinates of UTM have 1e-9 m.
   EXPECT_NEAR(found.polygon, 0.98, 1e-8);
@@ -97,7 +96,7 @@ TEST(AreaMeasures, OverhangsCountOnce) {
   add_square(0.3f, false);
   const AreaMeasures found =
       AreaMeter(mesh, Eigen::Vector3d::Zero())
-          .measure({"all", {{{-0.9, -0.9}, {0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}}}});
+          .measure({"all", {{{{-0.9, -0.9}, {0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}}}}});
   EXPECT_NEAR(found.planar, 1.8 * 1.8, 1e-6);
   EXPECT_NEAR(found.surface, 1.8 * 1.8 + 2, 1e-6);
   EXPECT_NEAR(found.above, 0.1, 1e-6);  // of the plate of 1 x 1 x 0.1
@@ -107,13 +106,51 @@ TEST(AreaMeasures, OverhangsCountOnce) {
 TEST(AreaMeasures, OfHolesAndOutsideAreTold) {
   const Mesh mesh = graph(10, [](double, double) { return 0.0; });
   const AreaMeter meter(mesh, Eigen::Vector3d::Zero());
-  const AreaMeasures half = meter.measure({"half", {{{0, -0.5}, {2, -0.5}, {2, 0.5}, {0, 0.5}}}});
+  const AreaMeasures half = meter.measure({"half", {{{{0, -0.5}, {2, -0.5}, {2, 0.5}, {0, 0.5}}}}});
   EXPECT_NEAR(half.planar, 1, 1e-6);
   EXPECT_NEAR(half.polygon, 2, 1e-9);
   EXPECT_NEAR(half.rim, 0.5, 2e-3);  // 2000 places; a half of 6 m
   const AreaMeasures outside = meter.measure(disc({5, 5}, 1));
   EXPECT_EQ(outside.planar, 0);
   EXPECT_EQ(outside.surface, 0);
+  for (const double value : {outside.lowest, outside.highest, outside.above, outside.below,
+                             outside.rugosity(), outside.roughness(), outside.slope_degrees(),
+                             outside.aspect_degrees(), half.aspect_degrees()})
+    EXPECT_TRUE(std::isnan(value));
+  const AreaMeasures little =
+      meter.measure({"corner", {{{{0.9, 0.9}, {3, 0.9}, {3, 3}, {0.9, 3}}}}});
+  EXPECT_NEAR(little.planar, 0.01, 1e-6);
+  EXPECT_TRUE(std::isnan(little.above));  // a tenth of the rim has a surface
+}
+
+// Two mounds on a step: each part has the plane of its own rim.
+TEST(AreaMeasures, PartsHaveRimsOfTheirOwn) {
+  const auto mound = [](double x, double y) {
+    return std::max(0.0, 0.1 * (1 - (x * x + y * y) / 0.04));
+  };
+  const Mesh mesh = graph(400, [&](double x, double y) {
+    return (x > 0 ? 3 : 0) + mound(x + 0.5, y) + mound(x - 0.5, y);
+  });
+  Area both = disc({-0.5, 0}, 0.3);
+  both.parts.push_back(disc({0.5, 0}, 0.3).parts[0]);
+  const AreaMeasures found = AreaMeter(mesh, Eigen::Vector3d::Zero()).measure(both);
+  EXPECT_NEAR(found.above, 2 * kPi / 2 * 0.1 * 0.04, 2e-5);  // of two paraboloids
+  EXPECT_NEAR(found.planar, found.polygon, 1e-6);
+}
+
+// A closed box alone: its lower side is as large as its upper side.
+TEST(AreaMeasures, OfAClosedBodyAloneAreNone) {
+  Mesh mesh = graph(3, [](double, double) { return 1.0; });
+  Mesh lower = graph(3, [](double, double) { return 0.0; });
+  for (const auto& [a, b, c] : lower.faces) {
+    const auto first = static_cast<std::uint32_t>(16);
+    mesh.faces.push_back({a + first, c + first, b + first});
+  }
+  mesh.vertices.insert(mesh.vertices.end(), lower.vertices.begin(), lower.vertices.end());
+  const AreaMeasures found =
+      AreaMeter(mesh, Eigen::Vector3d::Zero()).measure(disc({0.1, 0.1}, 0.5));
+  EXPECT_EQ(found.planar, 0);
+  EXPECT_TRUE(std::isnan(found.plane.level));
 }
 
 }  // namespace

@@ -24,4 +24,10 @@ using Conversion = Owned<OGRCoordinateTransformationH, OCTDestroyCoordinateTrans
 using Feature = Owned<OGRFeatureH, OGR_F_Destroy>;
 using Geometry = Owned<OGRGeometryH, OGR_G_DestroyGeometry>;
 
+// Adds a field to a layer. False if that fails.
+inline bool add_field(OGRLayerH layer, const char* name, OGRFieldType type) {
+  const Owned<OGRFieldDefnH, OGR_Fld_Destroy> field(OGR_Fld_Create(name, type));
+  return OGR_L_CreateField(layer, field.get(), TRUE) == OGRERR_NONE;
+}
+
 }  // namespace axial::map
