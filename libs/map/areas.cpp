@@ -141,6 +141,7 @@ Area area_of(OGRFeatureH feature, std::string name, OGRCoordinateTransformationH
 }  // namespace
 
 std::vector<Area> read_areas(const fs::path& file, const std::string& crs) {
+  require_regular_file(file);
   const GdalErrors errors;
   const DatasetPtr data(
       GDALOpenEx(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr));

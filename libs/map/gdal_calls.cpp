@@ -78,6 +78,12 @@ void start_gdal() {
   });
 }
 
+void require_regular_file(const fs::path& file) {
+  std::error_code ignored;
+  if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored))
+    fail_in(file, "is not a regular file");
+}
+
 GdalErrors::GdalErrors() {
   start_gdal();
   errno = 0;

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import math
+import os
 import sqlite3
 
 from programs import files_below, main, write
@@ -105,6 +106,10 @@ class Errors(MeasureTest):
             self.refuses(expected, *self.measure(areas=name + ".geojson"))
         self.refuses("--areas is missing", "MeasureSurface", "-w", self.work, "-i", self.mesh)
         self.refuses("contradicts --map", *self.measure("--epsg", "32617"))
+        os.mkfifo(self.path("work", "pipe"))
+        self.refuses("pipe: is not a regular file", *self.measure(areas="pipe"))
+        self.refuses("pipe: is not a regular file", *self.measure(map_file="pipe"))
+        os.remove(self.path("work", "pipe"))
         self.refuses("none.tif: ", *self.measure(map_file="none.tif"))
         self.refuses("none.gpkg: ", *self.measure(areas="none.gpkg"))
         write(self.path("work", "clash.gpkg"), polygons(a=box(0, 0, 1, 1)))

@@ -18,6 +18,10 @@ namespace axial::map {
 // Registers GDAL's drivers and limits its cache, once.
 void start_gdal();
 
+// Error if `file` exists and is not a regular file: GDAL would wait for ever for the writer of a
+// pipe.
+void require_regular_file(const std::filesystem::path& file);
+
 // Collects the errors of GDAL's calls on this thread while it exists, instead of printing them.
 class GdalErrors {
  public:
