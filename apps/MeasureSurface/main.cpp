@@ -63,8 +63,7 @@ void turn_up(Mesh& mesh, const fs::path& file) {
   for (auto& face : mesh.faces) std::swap(face[1], face[2]);
   log_warning(
       "{}: its faces are turned down: their other side is measured. Is the mesh inside out, or "
-      "does "
-      "--up point the wrong way?",
+      "does --up point the wrong way?",
       file.string());
 }
 
@@ -107,10 +106,9 @@ std::vector<map::MeasuredArea> measure(const Mesh& mesh, const Eigen::Vector3d& 
 void report(const std::vector<map::MeasuredArea>& areas, const fs::path& mesh) {
   constexpr double kPart = 0.01;
   constexpr std::size_t kMostNamed = 5;
-  std::size_t empty = 0, named = 0, odd = 0;
+  std::size_t empty = 0, odd = 0;
   const auto warn = [&](const map::MeasuredArea& one, const std::string& what) {
-    ++odd;
-    if (++named <= kMostNamed) log_warning("polygon '{}': {}", one.area.name, what);
+    if (++odd <= kMostNamed) log_warning("polygon '{}': {}", one.area.name, what);
   };
   for (const map::MeasuredArea& one : areas) {
     const double share = one.measures.planar / one.measures.polygon;

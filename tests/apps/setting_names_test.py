@@ -13,8 +13,6 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Files that parse or declare the options that they name.
 DECLARE_OPTIONS = {"libs/base/newer_options.cpp", "libs/base/option_values.cpp", "libs/base/program.cpp",
                    "libs/io/openmvs/scene_options.cpp", "libs/survey/photograph_options.cpp"}
-# Settings that a program has no option for, and never uses.
-UNUSED = {}
 COMMAND_LINES = "libs/experiments/"  # puts together command lines of programs
 
 # The programs that name the settings of each library, and how many settings the library has at least.
@@ -90,7 +88,7 @@ class SettingNames(unittest.TestCase):
             asked = names_asked_for(ROOT / library)
             self.assertGreaterEqual(len(asked), least, library)
             for program in programs:
-                self.assertEqual(asked - settings_named(program) - UNUSED.get(program, set()), set(), program)
+                self.assertEqual(asked - settings_named(program), set(), program)
 
 
 class OptionsInLibraries(unittest.TestCase):
