@@ -6,9 +6,9 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/mcc.hpp>
-#include <span>
 
 #include "base/order_statistics.h"
+#include "base/pair_sums.h"
 #include "color/difference.h"
 #include "color/transfer.h"
 
@@ -71,15 +71,6 @@ bool overlap(const Chart& one, const Chart& other) {
   };
   return cv::pointPolygonTest(other.corners, middle(one), false) >= 0 ||
          cv::pointPolygonTest(one.corners, middle(other), false) >= 0;
-}
-
-// Pearson's; 0 if one of the lists does not vary. Precondition: equally many values.
-double correlation(std::span<const double> a, std::span<const double> b) {
-  const Eigen::Map<const Eigen::ArrayXd> x(a.data(), static_cast<Eigen::Index>(a.size()));
-  const Eigen::Map<const Eigen::ArrayXd> y(b.data(), static_cast<Eigen::Index>(b.size()));
-  const Eigen::ArrayXd dx = x - x.mean(), dy = y - y.mean();
-  const double scale = std::sqrt(dx.square().sum() * dy.square().sum());
-  return scale > 0 ? (dx * dy).sum() / scale : 0;
 }
 
 // The chart again, in an enlarged part of the photograph: corners of small charts are off by a
@@ -145,13 +136,11 @@ double likeness(const PatchLights& lights, const std::array<bool, 3>& known) {
   double least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k)
     if (known[static_cast<std::size_t>(k)]) {
-      std::vector<double> light, color;
+      PairSums sums;
       for (std::size_t i = 0; i < kPatches; ++i)
-        if (std::isfinite(lights[i][k])) {
-          light.push_back(static_cast<double>(lights[i][k]));
-          color.push_back(static_cast<double>(colors[i][k]));
-        }
-      least = std::min(least, light.size() < kPatches / 2 ? 0 : correlation(light, color));
+        if (std::isfinite(lights[i][k]))
+          sums.add(static_cast<double>(lights[i][k]), static_cast<double>(colors[i][k]));
+      least = std::min(least, sums.n < kPatches / 2 ? 0 : sums.correlation());
     }
   return std::isfinite(least) ? least : 0;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/order_statistics.h"
+#include "base/pair_sums.h"
 #include "base/parallel.h"
 #include "compare/height_map.h"
 
@@ -69,28 +70,10 @@ cv::Mat1f relief_of(const cv::Mat1f& heights) {
   return relief;
 }
 
-// The sums of a correlation.
-struct Sums {
-  double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
-
-  void add(double p, double q) {
-    n += 1;
-    a += p;
-    b += q;
-    aa += p * p;
-    bb += q * q;
-    ab += p * q;
-  }
-  double correlation() const {
-    const double variances = (aa - a * a / n) * (bb - b * b / n);
-    return n > 0 && variances > 0 ? (ab - a * b / n) / std::sqrt(variances) : 0;
-  }
-};
-
 // The sums over a window of `a` and of `b` shifted by (dx, dy). The parts of `b` that are shifted
 // beyond a side come in at the other side.
-Sums sums_in(const cv::Mat1f& a, const cv::Mat1f& b, cv::Point shift, cv::Rect window) {
-  Sums sums;
+PairSums sums_in(const cv::Mat1f& a, const cv::Mat1f& b, cv::Point shift, cv::Rect window) {
+  PairSums sums;
   for (int y = window.y; y < window.br().y; ++y)
     for (int x = window.x; x < window.br().x; ++x) {
       const auto p = static_cast<double>(a(y, x));
@@ -110,7 +93,7 @@ Correlation correlation(const cv::Mat1f& a, const cv::Mat1f& b, cv::Point shift)
   std::vector<double> values;
   for (int y = 0; y + kWindow <= a.rows; y += kStep)
     for (int x = 0; x + kWindow <= a.cols; x += kStep) {
-      const Sums sums = sums_in(a, b, shift, {x, y, kWindow, kWindow});
+      const PairSums sums = sums_in(a, b, shift, {x, y, kWindow, kWindow});
       if (2 * sums.n >= kWindow * kWindow) values.push_back(sums.correlation());
     }
   const std::size_t windows = values.size();

@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/order_statistics.h"
+#include "base/pair_sums.h"
 
 namespace axial::survey {
 namespace {
@@ -20,19 +21,6 @@ double mean_around(const cv::Mat1d& sums, const cv::Point& at, int half) {
   const int top = std::max(at.y - half, 0), bottom = std::min(at.y + half + 1, sums.rows - 1);
   const double sum = sums(bottom, right) - sums(bottom, left) - sums(top, right) + sums(top, left);
   return sum / ((right - left) * (bottom - top));
-}
-
-double correlation(const std::vector<std::array<double, 2>>& pairs) {
-  std::array<double, 2> mean{}, variance{};
-  double covariance = 0;
-  for (const auto& pair : pairs)
-    for (std::size_t k = 0; k < 2; ++k) mean[k] += pair[k] / static_cast<double>(pairs.size());
-  for (const auto& pair : pairs) {
-    for (std::size_t k = 0; k < 2; ++k) variance[k] += (pair[k] - mean[k]) * (pair[k] - mean[k]);
-    covariance += (pair[0] - mean[0]) * (pair[1] - mean[1]);
-  }
-  const double scale = std::sqrt(variance[0] * variance[1]);
-  return scale > 0 ? covariance / scale : 0;
 }
 
 }  // namespace
@@ -95,17 +83,17 @@ std::vector<PhotographFacts> PhotographSamples::facts() const {
     facts.looked_at = image.looked_at;
     facts.is_blank = image.is_blank;
     if (!image.looked_at) continue;
-    std::vector<std::array<double, 2>> pairs;
+    PairSums pairs;
     for (const Sample& sample : image.samples) {
       std::vector<float> others;
       for (const auto& [other, detail] : places[sample.place])
         if (other != i) others.push_back(detail);
       if (!others.empty())
-        pairs.push_back({static_cast<double>(sample.detail),
-                         static_cast<double>(upper_median(std::move(others)))});
+        pairs.add(static_cast<double>(sample.detail),
+                  static_cast<double>(upper_median(std::move(others))));
     }
-    facts.samples = pairs.size();
-    facts.agreement = correlation(pairs);
+    facts.samples = static_cast<std::size_t>(pairs.n);
+    facts.agreement = pairs.correlation();
   }
   return result;
 }
