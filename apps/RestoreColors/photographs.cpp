@@ -39,8 +39,12 @@ color::Rendering rendering_of(const Settings& settings, const survey::Survey& su
 
 }  // namespace
 
-fs::path photograph_name(const survey::Survey& survey, std::size_t view) {
-  return survey.views[view].file.lexically_relative(common_folder(survey));
+std::vector<fs::path> photograph_names(const survey::Survey& survey) {
+  const fs::path folder = common_folder(survey);
+  std::vector<fs::path> names;
+  for (const survey::View& view : survey.views)
+    names.push_back(view.file.lexically_relative(folder));
+  return names;
 }
 
 geometry::PosedCamera posed(const survey::View& view) {
@@ -61,10 +65,9 @@ PhotographLight read_light(const survey::Survey& survey, std::size_t view,
 }
 
 OutputNames output_names(const Settings& settings, const survey::Survey& survey) {
-  const fs::path folder = common_folder(survey);
   OutputNames names;
-  for (const survey::View& view : survey.views) {
-    fs::path name = survey::restored_name(view.file.lexically_relative(folder));
+  for (const fs::path& photograph : photograph_names(survey)) {
+    fs::path name = survey::restored_name(photograph);
     if (settings.masks) names.masks.push_back(fs::path("masks") / (name.string() + ".png"));
     names.photographs.push_back(std::move(name));
   }

@@ -23,8 +23,8 @@ struct PhotographLight {
 PhotographLight read_light(const survey::Survey& survey, std::size_t view,
                            const color::Transfer& transfer);
 
-// The path of the photograph of a view below the folder that contains all photographs.
-std::filesystem::path photograph_name(const survey::Survey& survey, std::size_t view);
+// The paths of the photographs of all views, below the deepest folder that contains all of them.
+std::vector<std::filesystem::path> photograph_names(const survey::Survey& survey);
 
 geometry::PosedCamera posed(const survey::View& view);
 

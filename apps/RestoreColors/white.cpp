@@ -78,11 +78,17 @@ void use_grey(const GreyPatch& grey, const SeenLight& light, Findings& findings)
   for (int y = grey.part.y; y < grey.part.br().y; ++y)
     for (int x = grey.part.x; x < grey.part.br().x; ++x) pixels.emplace_back(x, y);
   const Eigen::Array3f mean = light.mean(pixels);
-  if (!(mean > 0).all())
-    fail("--grey {}: the light of this part is not known: it is clipped, or no surface is there",
-         grey.image);
-  const Eigen::Array3f gain = mean.inverse();
-  set_gain(gain * (findings.gain.mean() / gain.mean()), findings);
+  const std::array<bool, 3> known = color::determined(findings.choice.model);
+  float brightness = 0, of_patch = 0;  // sums of the gains of the channels that are known
+  for (int k = 0; k < 3; ++k) {
+    if (!known[static_cast<std::size_t>(k)]) continue;
+    if (!(mean[k] > 0))
+      fail("--grey {}: the light of this part is not known: it is clipped, or no surface is there",
+           grey.image);
+    brightness += findings.gain[k];
+    of_patch += 1 / mean[k];
+  }
+  set_gain(brightness / of_patch * mean.inverse(), findings);
   findings.white = White::grey_part;
 }
 
@@ -122,9 +128,10 @@ void use_charts(const Settings& settings, const survey::Survey& survey,
                 const color::SeenSurface& surface, std::span<const std::size_t> views,
                 Findings& findings, const Context& context) {
   ProgressCounter progress(context.stage("Looking for colour charts"), views.size());
+  const std::vector<std::filesystem::path> names = photograph_names(survey);
   std::string fault;  // of the last chart that cannot be used
   for (const std::size_t view : views) {
-    const std::string name = photograph_name(survey, view).generic_string();
+    const std::string name = names[view].generic_string();
     const SeenLight light(settings, survey, surface, findings, view);
     for (SeenChart& chart : charts_in(name, light, findings)) {
       const std::string why = fault_of(chart, findings);

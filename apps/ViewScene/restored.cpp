@@ -83,12 +83,16 @@ Json three_of(const JsonField& field) {
   return numbers;
 }
 
+// Error if there are more than `most` elements.
+std::vector<JsonField> few_elements(const JsonField& field, std::size_t most) {
+  std::vector<JsonField> elements = field.elements();
+  if (elements.size() > most) fail_in(field.file, "{} has more than {} elements", field.name, most);
+  return elements;
+}
+
 Json ways_of(const JsonField& field) {
   Json list = Json::array();
-  const std::vector<JsonField> rows = field.elements();
-  if (rows.size() > kMostWays)
-    fail_in(field.file, "{} has more than {} rows", field.name, kMostWays);
-  for (const JsonField& row : rows)
+  for (const JsonField& row : few_elements(field, kMostWays))
     list.push_back({{"way_m", row.at("way_m").number_from_0()},
                     {"before", three_of(row.at("before"))},
                     {"after", three_of(row.at("after"))}});
@@ -97,10 +101,7 @@ Json ways_of(const JsonField& field) {
 
 Json charts_of(const JsonField& field) {
   Json list = Json::array();
-  const std::vector<JsonField> charts = field.elements();
-  if (charts.size() > kMostCharts)
-    fail_in(field.file, "{} has more than {} charts", field.name, kMostCharts);
-  for (const JsonField& chart : charts)
+  for (const JsonField& chart : few_elements(field, kMostCharts))
     list.push_back({{"photograph", chart.at("photograph").text()},
                     {"ciede2000", chart.at("ciede2000").number_from_0()}});
   return list;
