@@ -12,6 +12,7 @@
 #include "base/output_lock.h"
 #include "belong/surface_check.h"
 #include "compare/write_changes.h"
+#include "geometry/faces.h"
 #include "geometry/seen_part.h"
 #include "io/cameras/geo_offset.h"
 #include "io/openmvs/point_source.h"
@@ -128,7 +129,7 @@ struct NearSide {
 NearSide near_side(const fs::path& path, const std::vector<geometry::PosedCamera>& photos,
                    Mesh& mesh, const Context& context) {
   return naming(path, [&]() -> NearSide {
-    const Eigen::Vector3d turned = compare::mean_normal(mesh);
+    const Eigen::Vector3d turned = geometry::mean_normal(mesh);
     if (photos.empty()) return {path, false, turned};
     context.memory().require(geometry::bytes_of_sights(mesh), "what the cameras see");
     const geometry::SeenPart part = geometry::find_seen_part(mesh, photos);

@@ -52,14 +52,7 @@ MapPlace place_of(const Settings& settings) {
 
 // Turns a mesh whose faces look down. Its lower side is not what a map shows.
 void turn_up(Mesh& mesh, const fs::path& file) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double area = 0;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const Eigen::Vector3d normal = geometry::area_vector(mesh, f);
-    sum += normal;
-    area += normal.norm();
-  }
-  if (!(area > 0) || !map::shows_far_side(Eigen::Vector3d::UnitZ(), sum / area)) return;
+  if (!map::shows_far_side(Eigen::Vector3d::UnitZ(), geometry::mean_normal(mesh))) return;
   for (auto& face : mesh.faces) std::swap(face[1], face[2]);
   log_warning(
       "{}: its faces are turned down: their other side is measured. Is the mesh inside out, or "

@@ -37,22 +37,6 @@ constexpr double kOfBend = 0.25;
 // difference of two such surfaces.
 constexpr double kNoisyBend = 12;
 
-struct Moments {
-  double area = 0;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // sum of the faces' normals times areas
-};
-
-Moments moments_of(const Mesh& mesh) {
-  Moments moments;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const Eigen::Vector3d normal = 0.5 * geometry::area_vector(mesh, f);
-    moments.normal += normal;
-    moments.area += normal.norm();
-  }
-  if (!(moments.area > 0)) fail("the mesh has no area");
-  return moments;
-}
-
 // The most pixels along a side of a grid around one survey, of which the common part is a map.
 constexpr double kMostOfSurvey = 2e9;
 
@@ -279,12 +263,7 @@ Comparison placed(const Mesh& before, const Mesh& after, const map::MapFrame& fr
 }  // namespace
 
 double vertex_distance(const Mesh& mesh) {
-  return std::sqrt(moments_of(mesh).area / static_cast<double>(mesh.vertices.size()));
-}
-
-Eigen::Vector3d mean_normal(const Mesh& mesh) {
-  const Moments moments = moments_of(mesh);
-  return moments.normal / moments.area;
+  return std::sqrt(geometry::area_of(mesh) / static_cast<double>(mesh.vertices.size()));
 }
 
 Eigen::Vector3d upward_direction(const Mesh& mesh, const Eigen::Vector3d& facing) {

@@ -70,20 +70,16 @@ void keep(Points& part, Points& spare, const Distance& distance) {
 
 }  // namespace
 
-std::vector<Eigen::Vector2d> crossings_of(std::span<const Ring> rings, std::size_t most) {
+std::optional<Eigen::Vector2d> crossing_of(std::span<const Ring> rings) {
   constexpr std::uint64_t kMostPairs = 1'000'000'000;
   const std::vector<Edge> edges = edges_of(rings);
-  std::vector<Eigen::Vector2d> found;
   std::uint64_t pairs = 0;
   for (std::size_t i = 0; i < edges.size(); ++i)
     for (std::size_t j = i + 1; j < edges.size() && edges[j].from.x() <= edges[i].to.x(); ++j) {
       if (++pairs > kMostPairs) fail("has too many edges above each other: simplify it");
-      if (const auto place = crossing_of(edges[i], edges[j])) {
-        found.push_back(*place);
-        if (found.size() == most) return found;
-      }
+      if (const auto place = crossing_of(edges[i], edges[j])) return place;
     }
-  return found;
+  return std::nullopt;
 }
 
 double PolygonPieces::Trapezoid::low_at(double x) const {

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,17 +15,18 @@ namespace axial::geometry {
 // first corner.
 using Ring = std::vector<Eigen::Vector2d>;
 
-// Places at which rings cross themselves or each other, or run along each other; at most `most`.
-// Rings may touch or cross in corners. Crossings up to kTouch from a corner count as touching.
-// Precondition: the coordinates are finite. Error if more than 1e9 pairs of edges overlap in x.
+// A place at which rings cross themselves or each other, or run along each other; nullopt if there
+// is none. Rings may touch or cross in corners. Crossings up to kTouch from a corner count as
+// touching. Precondition: the coordinates are finite. Error if more than 1e9 pairs of edges overlap
+// in x.
 inline constexpr double kTouch = 1e-4;  // [m]: rounded coordinates of a point where two rings touch
-std::vector<Eigen::Vector2d> crossings_of(std::span<const Ring> rings, std::size_t most = 1);
+std::optional<Eigen::Vector2d> crossing_of(std::span<const Ring> rings);
 
 // A polygon: the points that lie inside an odd number of rings. So a ring in another ring is a
 // hole, and rings beside each other are parts of one polygon.
 class PolygonPieces {
  public:
-  // Precondition: crossings_of() is empty, and the coordinates are finite. Large common offsets of
+  // Precondition: crossing_of() is nullopt, and the coordinates are finite. Large common offsets of
   // the coordinates cost digits. Error if the polygon has more than 10 million pieces.
   explicit PolygonPieces(std::span<const Ring> rings);
 

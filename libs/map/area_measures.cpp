@@ -143,7 +143,7 @@ struct AreaSums {
 };
 
 double AreaMeasures::rugosity() const {
-  return std::isfinite(plane.level) ? surface / planar : plane.level;
+  return plane.is_known() ? surface / planar : kNotKnown;
 }
 
 double AreaMeasures::rugosity_on_slope() const {
@@ -155,12 +155,12 @@ double AreaMeasures::roughness() const {
 }
 
 double AreaMeasures::slope_degrees() const {
-  return std::isfinite(plane.level) ? std::atan(plane.gradient.norm()) * kDegrees : plane.level;
+  return plane.is_known() ? std::atan(plane.gradient.norm()) * kDegrees : kNotKnown;
 }
 
 double AreaMeasures::aspect_degrees() const {
   constexpr double kLevel = 1e-6;  // vertices are floats
-  if (plane.gradient.norm() < kLevel) return std::numeric_limits<double>::quiet_NaN();
+  if (plane.gradient.norm() < kLevel) return kNotKnown;
   const double angle = std::atan2(-plane.gradient.x(), -plane.gradient.y()) * kDegrees;
   return angle < 0 ? angle + 360 : angle;
 }
@@ -225,7 +225,7 @@ double AreaMeter::add_part(std::span<const geometry::Ring> rings, AreaMeasures& 
                   [&](Corners piece) { chunks[chunk].add(piece, rim, memory); });
   });
   for (const AreaSums& chunk : chunks) sums.add(chunk);
-  if (!std::isfinite(rim.level)) sums.above = sums.below = rim.level;
+  if (!rim.is_known()) sums.above = sums.below = kNotKnown;
   return share;
 }
 

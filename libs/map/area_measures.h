@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <vector>
@@ -14,11 +15,15 @@
 
 namespace axial::map {
 
+inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
 // A plane as heights: height = level + gradient * ((x, y) - middle).
 struct HeightPlane {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero(), gradient = Eigen::Vector2d::Zero();
-  double level = std::numeric_limits<double>::quiet_NaN();
-  double variance = level;  // of the heights to which it was fitted, from the plane
+  double level = kNotKnown;     // NaN: there is no plane
+  double variance = kNotKnown;  // of the heights to which it was fitted, from the plane
+
+  bool is_known() const { return std::isfinite(level); }
 
   double height_of(const Eigen::Vector3d& x) const {
     return x.z() - level - gradient.dot(x.head<2>() - middle);
@@ -34,10 +39,10 @@ struct AreaMeasures {
   double planar = 0;
   double surface = 0;  // area of the surface itself, also of overhanging parts [m^2]
   HeightPlane plane;   // fits the heights best
-  double lowest = plane.level, highest = plane.level;  // [m]
+  double lowest = kNotKnown, highest = kNotKnown;  // [m]
   // Between the surface and the plane through the surface at the rim of each part of the polygon
   // [m^3].
-  double above = plane.level, below = plane.level;
+  double above = kNotKnown, below = kNotKnown;
   double rim = 0;  // the share of the rim at which there is a surface
 
   double rugosity() const;
@@ -75,7 +80,7 @@ class AreaMeter {
   std::vector<std::uint32_t> faces_in(const Eigen::AlignedBox2d& box) const;
   // Adds the faces above a part of a polygon. Returns the share of its rim that has a surface.
   double add_part(std::span<const geometry::Ring> rings, AreaMeasures& found, AreaSums& sums) const;
-  // The plane through the surface at the rim; its level is NaN if less than half of the rim has a
+  // The plane through the surface at the rim; none if less than half of the rim has a
   // surface. `share`: of the rim.
   HeightPlane rim_of(std::span<const geometry::Ring> rings, double& share) const;
 

@@ -95,8 +95,8 @@ void check_places(const Area& area, const fs::path& file) {
   std::vector<geometry::Ring> all;
   for (const auto& part : area.parts) all.insert(all.end(), part.begin(), part.end());
   try {
-    if (const auto crossings = geometry::crossings_of(all); !crossings.empty())
-      fail("crosses itself at ({:.3f}, {:.3f})", crossings[0].x(), crossings[0].y());
+    if (const auto place = geometry::crossing_of(all))
+      fail("crosses itself at ({:.3f}, {:.3f})", place->x(), place->y());
     for (const auto& part : area.parts) {
       const geometry::PolygonPieces pieces(part);
       for (const auto& other : area.parts)
@@ -141,11 +141,8 @@ Area area_of(OGRFeatureH feature, std::string name, OGRCoordinateTransformationH
 }  // namespace
 
 std::vector<Area> read_areas(const fs::path& file, const std::string& crs) {
-  require_regular_file(file);
   const GdalErrors errors;
-  const DatasetPtr data(
-      GDALOpenEx(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
-  errors.require_vectors_read(data != nullptr, file);
+  const DatasetPtr data = open_vectors(file, errors);
   const OGRLayerH layer = layer_of(data.get(), file);
   const Conversion conversion = conversion_to(crs, layer, file);
   std::vector<Area> areas;

@@ -36,8 +36,7 @@ void require_complete(const std::filesystem::path& path) {
 void write_contours(const std::filesystem::path& heights, double interval,
                     const std::filesystem::path& path) {
   const GdalErrors errors;
-  const DatasetPtr map(GDALOpen(heights.c_str(), GA_ReadOnly));
-  errors.require_read(map != nullptr, heights);
+  const DatasetPtr map = open_map(heights, errors);
   DatasetPtr file(
       GDALCreate(GDALGetDriverByName("GeoJSON"), path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
   errors.require_written(file != nullptr, path);

@@ -64,6 +64,12 @@ std::string reason_to_read(const fs::path& file, CPLErrorNum number, const char*
   return fmt::format("it is no {}, or it is damaged", kind);
 }
 
+void require_regular_file(const fs::path& file) {
+  std::error_code ignored;
+  if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored))
+    fail_in(file, "is not a regular file");
+}
+
 }  // namespace
 
 void start_gdal() {
@@ -76,12 +82,6 @@ void start_gdal() {
     RegisterOGRShape();
     GDALSetCacheMax64(static_cast<GIntBig>(kCacheBytes));
   });
-}
-
-void require_regular_file(const fs::path& file) {
-  std::error_code ignored;
-  if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored))
-    fail_in(file, "is not a regular file");
 }
 
 GdalErrors::GdalErrors() {
@@ -120,6 +120,21 @@ void GdalErrors::require_vectors_read(bool works, const fs::path& file) const {
   if (works && !failed_) return;
   fail_in(file, "cannot be read: {}",
           reason_to_read(file, number_, "GeoJSON, GeoPackage or shape file"));
+}
+
+DatasetPtr open_map(const fs::path& file, const GdalErrors& errors) {
+  require_regular_file(file);
+  DatasetPtr map(GDALOpen(file.c_str(), GA_ReadOnly));
+  errors.require_read(map != nullptr, file);
+  return map;
+}
+
+DatasetPtr open_vectors(const fs::path& file, const GdalErrors& errors) {
+  require_regular_file(file);
+  DatasetPtr vectors(
+      GDALOpenEx(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
+  errors.require_vectors_read(vectors != nullptr, file);
+  return vectors;
 }
 
 }  // namespace axial::map

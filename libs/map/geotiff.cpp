@@ -166,8 +166,7 @@ cv::Size reduced_size(const MapGrid& grid, int longest_side) {
 
 StoredMap read_map(const fs::path& path, int longest_side) {
   const GdalErrors errors;
-  const DatasetPtr file(GDALOpen(path.c_str(), GA_ReadOnly));
-  errors.require_read(file != nullptr, path);
+  const DatasetPtr file = open_map(path, errors);
   StoredMap map;
   std::array<double, 6> transform{};
   GDALGetGeoTransform(file.get(), transform.data());

@@ -135,8 +135,7 @@ void mark_missing(GDALDatasetH file, cv::Mat1f values) {
 ReducedMap read_reduced_map(const fs::path& path, MapKind kind, int longest_side,
                             const std::string& stated) {
   const GdalErrors errors;
-  const DatasetPtr file(GDALOpen(path.c_str(), GA_ReadOnly));
-  errors.require_read(file != nullptr, path);
+  const DatasetPtr file = open_map(path, errors);
   check_bands(file.get(), kind, path);
   check_kind(file.get(), stated, path);
   check_blocks(file.get(), path);

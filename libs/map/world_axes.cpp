@@ -64,10 +64,8 @@ std::optional<WorldAxes> axes_in(GDALDatasetH file, const std::filesystem::path&
 }
 
 StatedPlace stated_place(const std::filesystem::path& path) {
-  require_regular_file(path);
   const GdalErrors errors;
-  const DatasetPtr file(GDALOpen(path.c_str(), GA_ReadOnly));
-  errors.require_read(file != nullptr, path);
+  const DatasetPtr file = open_map(path, errors);
   return {axes_in(file.get(), path), GDALGetProjectionRef(file.get())};
 }
 

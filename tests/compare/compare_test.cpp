@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "compare/draw_changes.h"
 #include "compare/write_changes.h"
+#include "geometry/faces.h"
 #include "map/geotiff.h"
 #include "support/empty_folder.h"
 #include "support/error_of.h"
@@ -209,10 +210,10 @@ TEST(Compare, NeedsMemory) {
 
 TEST(UpwardDirection, IsOnTheSideOfTheFaces) {
   const Mesh mesh = survey_before();
-  EXPECT_GT(upward_direction(mesh, mean_normal(mesh)).z(), 0.99);
+  EXPECT_GT(upward_direction(mesh, geometry::mean_normal(mesh)).z(), 0.99);
   Mesh turned = mesh;
   for (auto& face : turned.faces) std::swap(face[0], face[1]);
-  EXPECT_LT(upward_direction(turned, mean_normal(turned)).z(), -0.99);
+  EXPECT_LT(upward_direction(turned, geometry::mean_normal(turned)).z(), -0.99);
   // The side that cameras see counts, if it is known.
   EXPECT_GT(upward_direction(turned, {0, 0, 0.5}).z(), 0.99);
   EXPECT_NEAR(vertex_distance(surveyed({.noise = 0}, [](double, double) { return 0.0; })), 0.0125,

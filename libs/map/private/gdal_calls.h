@@ -18,10 +18,6 @@ namespace axial::map {
 // Registers GDAL's drivers and limits its cache, once.
 void start_gdal();
 
-// Error if `file` exists and is not a regular file: GDAL would wait for ever for the writer of a
-// pipe.
-void require_regular_file(const std::filesystem::path& file);
-
 // Collects the errors of GDAL's calls on this thread while it exists, instead of printing them.
 class GdalErrors {
  public:
@@ -67,5 +63,10 @@ struct Close {
   void operator()(GDALDatasetH file) const { GDALClose(file); }
 };
 using DatasetPtr = std::unique_ptr<std::remove_pointer_t<GDALDatasetH>, Close>;
+
+// Opens a map, or a file of points, lines or polygons, to read it. Error if it cannot be opened or
+// is not a regular file: GDAL would wait for ever for the writer of a pipe.
+DatasetPtr open_map(const std::filesystem::path& file, const GdalErrors& errors);
+DatasetPtr open_vectors(const std::filesystem::path& file, const GdalErrors& errors);
 
 }  // namespace axial::map

@@ -187,11 +187,8 @@ struct Comparison {
 // The square root of the area of the mesh per vertex [m]. Error for a mesh without area.
 double vertex_distance(const Mesh& mesh);
 
-// The mean of the unit normals of the faces, weighted by area. Error for a mesh without area.
-Eigen::Vector3d mean_normal(const Mesh& mesh);
-
 // The unit normal of the plane that fits the mesh best (map::fitted_plane()), on the side of
-// `facing`: the mean normal of the side of the surface that is seen, for example mean_normal().
+// `facing`: the mean normal of the side of the surface that is seen.
 // Error for a mesh without area, and if `facing` is 0, as that of a closed mesh.
 Eigen::Vector3d upward_direction(const Mesh& mesh, const Eigen::Vector3d& facing);
 
