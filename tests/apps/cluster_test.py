@@ -20,6 +20,7 @@ RESULTS = ("scene_dense.mvs", "scene_dense.ply", "scene_dense_mesh.ply", "scene_
            *(f"scene_textured.tile{tile}-2.{kind}" for tile in (1, 2) for kind in ("glb", "ply")),
            "scene_map.dem.tif", "scene_map.ortho.tif")
 VIEWS = 40
+LONGEST_WAIT = 300  # [s]: other tests may use the processors
 SLURM = ("--cluster", "slurm", "--snakemake=--max-status-checks-per-second 1")
 ON_TWO_NODES = unittest.skipIf(small_slurm.reason_to_skip(), small_slurm.reason_to_skip())
 DENSIFY = "--resolution-level 0 --min-resolution 100 --geometric-iters 1 --plan-parts 2"
@@ -91,7 +92,7 @@ class Cluster(unittest.TestCase):
     @classmethod
     def reconstruct(cls, out, *more):
         process = cls.start(out, *more)
-        said = process.communicate(timeout=600)[0]
+        said = process.communicate(timeout=2 * LONGEST_WAIT)[0]
         assert process.returncode == 0, said
         return said
 
@@ -113,7 +114,7 @@ class Cluster(unittest.TestCase):
     def wait_for_part(self, process, out):
         """Waits until a job of the depth maps has begun and is not done."""
         steps = self.folder / out / "steps"
-        end = time.monotonic() + 120
+        end = time.monotonic() + LONGEST_WAIT
         while not list(steps.glob("depth-*.begun.json")):
             self.assertIsNone(process.poll())
             self.assertLess(time.monotonic(), end)
@@ -129,7 +130,7 @@ class Cluster(unittest.TestCase):
         self.assertNotIn("densify", before)
         # TextureMesh fails, because jobs on this machine are not repeated.
         process = self.start("out", "--cluster", "local")
-        said = process.communicate(timeout=600)[0]
+        said = process.communicate(timeout=2 * LONGEST_WAIT)[0]
         self.assertEqual(process.returncode, 1)
         self.assertIn("reconstruct: texture: texture: exit code 1, its output is in", said)
         self.assertIn("reconstruct: snakemake: exit code 1; ", said)
@@ -184,10 +185,10 @@ class Cluster(unittest.TestCase):
                    SLOW.format(program=pathlib.Path(BIN).resolve() / "DensifyPointCloud"))
         process = self.start("interrupted", *SLURM, f"--densify={DENSIFY[:-1]}8", "--programs",
                              str(programs), start_new_session=True)
-        self.cluster.wait_for(lambda: self.cluster.ask("squeue", "-h", "-o", "%j").count("of8-") == 8, 120)
+        self.cluster.wait_for(lambda: self.cluster.ask("squeue", "-h", "-o", "%j").count("of8-") == 8, LONGEST_WAIT)
         time.sleep(4)  # until snakemake asks for the states of all of them
         os.killpg(process.pid, signal.SIGINT)  # like Ctrl-C
-        said = process.communicate(timeout=120)[0]
+        said = process.communicate(timeout=LONGEST_WAIT)[0]
         self.assertEqual(process.returncode, 1)
         self.assertIn("reconstruct: stopped; the same command continues from here", said)
         left = set(self.cluster.ask("squeue", "--noheader", "--format", "%T").split())
@@ -208,11 +209,11 @@ class Cluster(unittest.TestCase):
                      *out.glob("scene_dense*")]:
             file.unlink()
         process = self.start("nodes", *SLURM, "--until", "cloud")
-        self.cluster.wait_for(self.node_of_part, 120)
+        self.cluster.wait_for(self.node_of_part, LONGEST_WAIT)
         job, node = self.node_of_part()
         self.cluster.kill(node)
         self.assertNotIn("depth-photometric-1of2", self.steps_done("nodes"))
-        said = process.communicate(timeout=300)[0]
+        said = process.communicate(timeout=LONGEST_WAIT)[0]
         self.assertEqual(process.returncode, 0, said)
         self.assertRegex(self.cluster.log("slurmctld"),
                          f"requeue job JobId={job} due to failure of node {node}")
