@@ -30,6 +30,11 @@ bool is_without_offset(const LocalFrame& frame, const fs::path& path) {
   return place.frame.is_world() && is_near(frame, place.first_vertex);
 }
 
+LocalFrame frame_of_positions(const LocalFrame& frame, const fs::path& ply) {
+  const PlyPlace place = ply_place(ply);
+  return is_without_offset(frame, ply) ? frame : place.frame;
+}
+
 void tell_lost_offset(const fs::path& file, const LocalFrame& frame) {
   log_info(
       "{}: states no offset; its coordinates count from the scene's offset {:.0f} {:.0f} {:.0f}",

@@ -75,6 +75,11 @@ std::optional<PointSourceCounts> count_point_cloud(const std::filesystem::path& 
 // of these formats.
 bool is_without_offset(const LocalFrame& frame, const std::filesystem::path& path);
 
+// The frame of the stored positions of a PLY that belongs to a scene in `frame`: `frame` if
+// is_without_offset(), otherwise that of the comment geo_offset, or the world. Errors as for
+// ply_place().
+LocalFrame frame_of_positions(const LocalFrame& frame, const std::filesystem::path& ply);
+
 // States in the log that the positions of `file` count as positions in the frame of its scene.
 void tell_lost_offset(const std::filesystem::path& file, const LocalFrame& frame);
 

@@ -8,8 +8,8 @@
 namespace axial::io {
 namespace {
 
-void require_finite(const Eigen::Vector3f& v, const char* field, std::size_t row,
-                    const std::string& file) {
+template <class Vector>
+void require_finite(const Vector& v, const char* field, std::size_t row, const std::string& file) {
   if (!v.allFinite()) fail_in(file, "vertex {} has a {} that is not finite", row, field);
 }
 
@@ -78,7 +78,7 @@ VertexRows::VertexRows(const PlyElement& element, std::string file,
   for (std::size_t slot = 0; slot < kSlots; ++slot) {
     const std::string name = kNames[slot];
     has_[slot] = rows_.store(name, values_[slot]) ||
-                 (slot >= kRed && rows_.store("diffuse_" + name, values_[slot]));
+                 (slot >= kRed && slot <= kBlue && rows_.store("diffuse_" + name, values_[slot]));
   }
   has_views_ = rows_.store("view_indices", indices_);
   has_weights_ = rows_.store("view_weights", weights_);
@@ -102,27 +102,33 @@ Rgb VertexRows::color() const {
 }
 
 void VertexRows::append_views(PointCloud& cloud) const {
-  if (has_weights_ && weights_.size() != indices_.size())
-    fail_in(file_, "vertex {} has {} view_indices but {} view_weights", row_, indices_.size(),
-            weights_.size());
   for (const double value : indices_)
-    cloud.view_images.push_back(as_index(value, "view_indices", row_, file_));
+    cloud.view_images.push_back(as_index(value, "view_indices", row(), file_));
   if (has_weights_)
     for (const double value : weights_) cloud.view_weights.push_back(static_cast<float>(value));
   cloud.view_begin.push_back(cloud.view_images.size());
 }
 
-void VertexRows::read(PlyBody& body, PointCloud& cloud) {
+void VertexRows::read(PlyBody& body) {
   rows_.read(body);
+  ++rows_read_;
+  require_finite(stored_position(), "position", row(), file_);
+  if (has_normals()) require_finite(stored_normal(), "normal", row(), file_);
+  if (has_views_ && has_weights_ && weights_.size() != indices_.size())
+    fail_in(file_, "vertex {} has {} view_indices but {} view_weights", row(), indices_.size(),
+            weights_.size());
+}
+
+void VertexRows::read(PlyBody& body, PointCloud& cloud) {
+  read(body);
   cloud.positions.push_back((shift_ ? (numbers(kX) + *shift_).eval() : numbers(kX)).cast<float>());
-  require_finite(cloud.positions.back(), "position", row_, file_);
-  if (has(kNx)) {
-    cloud.normals.emplace_back(numbers(kNx).cast<float>());
-    require_finite(cloud.normals.back(), "normal", row_, file_);
+  require_finite(cloud.positions.back(), "position", row(), file_);
+  if (has_normals()) {
+    cloud.normals.emplace_back(stored_normal().cast<float>());
+    require_finite(cloud.normals.back(), "normal", row(), file_);
   }
-  if (has(kRed)) cloud.colors.push_back(color());
+  if (has_colors()) cloud.colors.push_back(color());
   if (has_views_) append_views(cloud);
-  ++row_;
 }
 
 }  // namespace axial::io

@@ -123,12 +123,6 @@ Vertices vertices_of(const PlyHeader& header, const std::string& file) {
   return vertices;
 }
 
-// The frame of the positions of a file that belongs to a scene in `frame`.
-LocalFrame frame_of_positions(const std::filesystem::path& ply, const LocalFrame& frame) {
-  const PlyPlace place = ply_place(ply);
-  return is_without_offset(frame, ply) ? frame : place.frame;
-}
-
 }  // namespace
 
 void transform_ply(const std::filesystem::path& input, const std::filesystem::path& output,
@@ -136,7 +130,7 @@ void transform_ply(const std::filesystem::path& input, const std::filesystem::pa
   const std::string file = input.string(), bytes = read_file(input);
   const PlyHeader header = parse_ply_header(bytes, file);
   Vertices vertices = vertices_of(header, file);
-  const LocalFrame stored = frame_of_positions(input, move.from);
+  const LocalFrame stored = frame_of_positions(move.from, input);
   const bool world = !header.geo_offset && stored.is_world() &&
                      vertices.element->properties[vertices.position[0]].type == PlyType::kFloat64;
   vertices.similarity = move.ending_in(world ? LocalFrame{} : move.to).similarity;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/ply/ply.h"
+#include "private/bytes/atomic_stream.h"
 #include "private/bytes/byte_writer.h"
 
 namespace axial::io {
@@ -93,13 +92,12 @@ void append_position(std::string& bytes, const Eigen::Vector3f& position,
 }
 
 struct CloudWriter::File {
-  AtomicFile file;
+  AtomicStream stream;
   CloudLayout layout;
   PlyPlacement placement;
-  std::ofstream stream;
   std::size_t points = 0;
 
-  std::string name() const { return file.path().string(); }
+  std::string name() const { return stream.name(); }
 
   void check(const PointCloud& portion) const {
     if (layout.colors) require_length(portion.colors.size(), portion.size(), "colors", name());
@@ -112,24 +110,12 @@ struct CloudWriter::File {
     if (layout.errors)
       require_length(portion.confidences.size(), portion.size(), "confidences", name());
   }
-
-  void write(const std::string& bytes) {
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    require_good();
-  }
-
-  void require_good() const {
-    if (!stream)
-      fail_in(name(), "cannot be written: {}", errno ? std::strerror(errno) : "write failed");
-  }
 };
 
 CloudWriter::CloudWriter(const std::filesystem::path& path, const CloudLayout& layout,
                          const PlyPlacement& placement)
-    : file_(new File{AtomicFile(path), layout, placement, {}, 0}) {
-  errno = 0;
-  file_->stream.open(file_->file.temporary(), std::ios::binary);
-  file_->write(cloud_header(layout, placement, 0));
+    : file_(new File{AtomicStream(path), layout, placement, 0}) {
+  file_->stream.write(cloud_header(layout, placement, 0));
 }
 
 CloudWriter::~CloudWriter() = default;
@@ -151,7 +137,7 @@ void CloudWriter::add(const PointCloud& portion) {
     out.write(portion.errors[i]);
     out.write(portion.confidences[i]);
   }
-  file_->write(out.bytes());
+  file_->stream.write(out.bytes());
   file_->points += portion.size();
 }
 
@@ -163,20 +149,14 @@ void CloudWriter::add_file(const std::filesystem::path& written, std::size_t poi
   if (!in || bytes.compare(0, header.size(), header) != 0)
     fail_in(written, "is not a cloud of {} points with the properties of {}", points,
             file_->name());
-  while (in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) || in.gcount() > 0) {
-    file_->stream.write(bytes.data(), in.gcount());
-    file_->require_good();
-  }
+  while (in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) || in.gcount() > 0)
+    file_->stream.write(std::string_view(bytes).substr(0, static_cast<std::size_t>(in.gcount())));
   if (in.bad()) fail_in(written, "cannot be read");
   file_->points += points;
 }
 
 void CloudWriter::finish() {
-  file_->stream.seekp(0);
-  file_->write(cloud_header(file_->layout, file_->placement, file_->points));
-  file_->stream.close();
-  file_->require_good();
-  file_->file.commit();
+  file_->stream.finish(cloud_header(file_->layout, file_->placement, file_->points));
 }
 
 void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud, bool with_views,

@@ -70,24 +70,54 @@ class VertexRows {
   // A cloud without points that has the arrays of the element's properties.
   PointCloud empty_cloud() const;
 
-  // Reads the next row and appends it to `cloud`, which empty_cloud() returned. Error that names
-  // the file and the row if a position or a normal is not finite, or if the views are malformed.
+  // Reads the next row. Error that names the file and the row if a position or a normal is not
+  // finite, or if there is not one weight for each view.
+  void read(PlyBody& body);
+
+  // Reads the next row and appends it to `cloud`, which empty_cloud() returned. Errors as for the
+  // function above, also for numbers that are not finite as float and for views that are no
+  // indices.
   void read(PlyBody& body, PointCloud& cloud);
 
-  // The position in the row that was read last, as stored.
+  // Whether the rows have these properties; errors: both error and confidence.
+  bool has_normals() const { return has(kNx); }
+  bool has_colors() const { return has(kRed); }
+  bool has_views() const { return has_views_; }
+  bool has_errors() const { return has_[kError] && has_[kConfidence]; }
+
+  // The values of the row that was read last, if the rows have these properties. Numbers are those
+  // of the file, without the shift; colours are clamped to 0 to 255.
   Eigen::Vector3d stored_position() const { return numbers(kX); }
+  Eigen::Vector3d stored_normal() const { return numbers(kNx); }
+  Rgb color() const;
+  std::size_t view_count() const { return indices_.size(); }
+  double error() const { return values_[kError]; }
+  double confidence() const { return values_[kConfidence]; }
 
  private:
   // The slots of a row that receive the values of properties.
-  enum Slot : std::size_t { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kSlots };
-  static constexpr std::array<const char*, kSlots> kNames{"x",  "y",   "z",     "nx",  "ny",
-                                                          "nz", "red", "green", "blue"};
+  enum Slot : std::size_t {
+    kX,
+    kY,
+    kZ,
+    kNx,
+    kNy,
+    kNz,
+    kRed,
+    kGreen,
+    kBlue,
+    kError,
+    kConfidence,
+    kSlots
+  };
+  static constexpr std::array<const char*, kSlots> kNames{
+      "x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "error", "confidence"};
 
   bool has(Slot first) const { return has_[first] && has_[first + 1] && has_[first + 2]; }
   Eigen::Vector3d numbers(Slot first) const {
     return {values_[first], values_[first + 1], values_[first + 2]};
   }
-  Rgb color() const;
+  std::size_t row() const { return rows_read_ - 1; }  // index of the row that was read last
   void append_views(PointCloud& cloud) const;
 
   std::string file_;
@@ -97,7 +127,7 @@ class VertexRows {
   std::array<double, kSlots> values_{};
   std::vector<double> indices_, weights_;  // lists of the last row
   bool has_views_ = false, has_weights_ = false;
-  std::size_t row_ = 0;  // number of rows read
+  std::size_t rows_read_ = 0;
 };
 
 }  // namespace axial::io

@@ -42,4 +42,11 @@ class PlyStream {
   std::size_t next_ = 0;  // index of the next element
 };
 
+// The element vertex of a file. Error that names the file if there is none.
+const PlyElement& vertex_element(const PlyStream& stream);
+
+// Calls `read` for each row of the element vertex, and skips the elements before it. No row may
+// have been read before. `read`, and Errors: as for PlyStream::for_each_row().
+void for_each_vertex(PlyStream& stream, const std::function<bool(PlyBody&)>& read);
+
 }  // namespace axial::io
