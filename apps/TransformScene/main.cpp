@@ -28,6 +28,7 @@
 #include "io/openmvs/scene_files.h"
 #include "io/ply/ply_transform.h"
 #include "io/textured/textured_mesh.h"
+#include "las_cloud.h"
 #include "measure_volume.h"
 #include "moved_mesh.h"
 #include "options.h"
@@ -272,6 +273,10 @@ int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   const Context context = program_context(options.parsed);
+  if (options.is_cloud()) {
+    write_as_las(options, context);
+    return 0;
+  }
   const Files files = files_of(options);
   std::optional<OutputLock> lock;
   const bool writes = !outputs_of(options, files).empty();

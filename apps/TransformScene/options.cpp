@@ -24,19 +24,28 @@ struct Texts {
   io::SceneOptions cameras;
 };
 
+bool is_las(const fs::path& path) {
+  return lower_extension(path) == ".las";
+}
+
 void declare_files(OptionList& list, Options& options, Texts& texts) {
-  list.add("input-file,i", &texts.input, "scene to transform (.mvs)")
+  list.add("input-file,i", &texts.input,
+           "scene to transform (.mvs); or a cloud (.ply), to write it as LAS (.las)")
       .add("pointcloud-file,p", &options.cloud,
            "PLY cloud in the scene's coordinates, transformed with it")
       .add("mesh-file,m", &options.mesh,
            "mesh in the scene's coordinates, transformed with it: PLY, OBJ, GLB or glTF")
       .add("output-file,o", &options.output,
            "scene to write (<input>_transform.mvs); the cloud and the mesh are written beside it, "
-           "as .ply and _mesh.ply")
+           "as .ply and _mesh.ply; for a cloud as input, the file to write (<input>.las)")
       .output_file()
       .add_with_default("export-type", &options.export_type,
                         "format of the mesh that is written: ply, obj, glb or gltf; a mesh that is "
-                        "not transformed is written, too, if this option is given");
+                        "not transformed is written, too, if this option is given")
+      .add_with_default("epsg", &options.epsg,
+                        "EPSG code of the coordinate reference system that a .las file states, a "
+                        "projected one in metres (0: none)")
+      .range(0, 1 << 20);
   io::declare_scene_options(list, texts.cameras);
 }
 
@@ -81,7 +90,26 @@ void declare_other_work(OptionList& list, Options& options) {
       .add_not_built("indices-file", "", {""});
 }
 
+// The options of a run that converts a cloud. A cloud has no cameras, and stays where it is.
+void set_cloud(Options& options) {
+  for (const char* name : {"pointcloud-file", "mesh-file", "export-type", "refractive", "housing",
+                           "camera-model", "allow-missing", "align-file", "transform-file",
+                           "positions", "rigid", "scale-ports", "transform-out", "compute-volume",
+                           "plane-threshold", "up-axis", "sample-mesh", "max-resolution"})
+    if (given(options.parsed, name))
+      fail("--{}: is for a scene, and --input-file {} is a cloud", name, options.input.string());
+  options.output =
+      output_or(options.output, fs::path(options.input).replace_extension(".las"), "--output-file");
+  if (!is_las(options.output))
+    fail("--output-file {}: a cloud is written as .las alone", options.output.string());
+}
+
 void set_paths(const Texts& texts, Options& options) {
+  options.input = in_working_folder(options.parsed.common, texts.input);
+  if (options.is_cloud()) return set_cloud(options);
+  if (is_las(options.output))
+    fail("--output-file {}: only a cloud is written as .las: give its .ply as --input-file",
+         options.output.string());
   options.survey.files = io::scene_files(texts.cameras, texts.input, options.parsed);
   options.output = with_extension(
       output_or(options.output, without_known_extension(options.survey.files.scene) += "_transform",
@@ -138,6 +166,7 @@ void warn_of_no_effect(const Options& options) {
        "without --align-file or --positions");
   warn(!options.moves(), {"scale-ports", "transform-out"}, "without a transformation");
   warn(options.mesh.empty(), {"export-type"}, "without --mesh-file");
+  warn(true, {"epsg"}, "without a cloud as --input-file");
   warn(!options.compute_volume, {"plane-threshold", "up-axis"}, "without --compute-volume 1");
 }
 
@@ -158,6 +187,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
   set_paths(texts, options);
+  if (options.is_cloud()) return options;
   check_mesh_outputs(options);
   check_samples(options);
   check(options);

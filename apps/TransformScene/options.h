@@ -5,13 +5,16 @@
 #include <string>
 
 #include "axial/survey.h"
+#include "base/file_extension.h"
 #include "base/program.h"
 
 namespace axial::apps {
 
 struct Options {
   ParsedOptions parsed;
-  survey::Options survey;
+  std::filesystem::path input;  // a scene, or a cloud that is written as LAS
+  int epsg = 0;                 // for LAS; 0: no coordinate reference system
+  survey::Options survey;       // not set for a cloud
   std::filesystem::path cloud, mesh, output;
   // The three ways to move the scene. At most one of these files is given.
   std::filesystem::path align, transform, positions;
@@ -27,6 +30,7 @@ struct Options {
 
   bool converts = false;  // the mesh is written in export_type, moved or not
 
+  bool is_cloud() const { return lower_extension(input) == ".ply"; }
   bool moves() const { return !align.empty() || !transform.empty() || !positions.empty(); }
   bool writes_mesh() const { return !mesh.empty() && (moves() || converts); }
   bool writes_scene() const { return moves() || max_resolution > 0; }

@@ -30,8 +30,9 @@ std::filesystem::path with_extension(const std::filesystem::path& path, std::str
 // file, so that the result could not be read again.
 void refuse_control_characters(const std::filesystem::path& path, const std::string& option);
 
-// Throws an Error if `path` has the extension of a format of clouds or meshes that no program
-// writes (.stl, .las and others): the user expects this format. `option`: as above.
+// Throws an Error if `path` has the extension of a format of clouds or meshes that the programs do
+// not write (.stl and others), or that only TransformScene writes (.las): the user expects this
+// format. `option`: as above.
 void refuse_other_format(const std::filesystem::path& path, const std::string& option);
 
 // Returns `given`, the path of an output that parse_options() took from the value of `option`, or

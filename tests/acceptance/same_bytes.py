@@ -59,6 +59,7 @@ def chain(data, water):
     if water:
         yield "RefinePoses", "@sparse", "-o", "poses", *port, "--lens", "@sparse/cameras.txt"
     yield "TransformScene", *scene, "-p", "scene_dense.ply", *PLACED, "-o", "moved.mvs"
+    yield "TransformScene", "-i", "moved.ply", "-o", "moved.las", "--epsg", 32617
 
 
 def run(programs, folder, data, command):

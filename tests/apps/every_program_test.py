@@ -202,6 +202,7 @@ class Rivals(Programs):
                 ("page", self.program("ViewScene", "--report", "page/")),
                 ("moved.mvs", self.program("TransformScene", "-t", "t.txt", "-o", "moved")),
                 ("some.mvs", self.program("TransformScene", "--sample-mesh", "-5", "-o", "some")),
+                ("cloud.las", ("TransformScene", "-i", "scene.ply", "-w", self.work, "-o", "cloud.las")),
                 ("made.mvs", ("InterfaceCOLMAP", "-i", self.path("colmap"), "-w", self.work, "-o", "made")),
                 ("sparse", ("InterfaceCOLMAP", "-i", "scene.mvs", "-w", self.work)), ("masks", masks)):
             lock = self.held(output, fcntl.LOCK_EX)
