@@ -247,6 +247,36 @@ class WithStandIns(StandIns):
         self.assertNotIn("restored-refine-mesh", names)
         self.assertIn("restored-mesh", names)
 
+    def test_the_cloud_becomes_las(self):
+        out = self.folder / "out"
+        self.succeeds("--without", "page")
+        said = self.succeeds("--without", "page", "--las")  # a run that is done makes nothing else
+        self.assertEqual(said.count("done before"), 11)
+        self.assertEqual(self.commands()[-1], f"TransformScene -i {out}/scene_dense.ply -o {out}/scene_dense.las")
+        self.assertIn(f"Cloud: {out}/scene_dense.ply   LAS: {out}/scene_dense.las   Mesh:", said)
+        self.assertIn("Of an earlier run, not of this one: scene_dense.las",
+                      self.succeeds("--without", "page", "--densify=--iters 2"))
+        self.assertEqual(self.done_before("--until", "cloud", "--las", "--densify=--iters 2"), 7)
+        restored = list(reconstruct_steps.steps(options_of(restore_colors=True, until="page", las=True), out))[-1]
+        self.assertEqual(restored.command[1:], ["-i", f"{out}/scene_restored.ply", "-o", f"{out}/scene_restored.las"])
+        self.assertEqual(self.refused("--until", "poses", "--las"),
+                         "--las: is for the cloud, which --until poses does not make")
+        (self.folder / "TransformScene").unlink()
+        self.assertIn("TransformScene not found", self.refused("--las"))
+
+    def test_maps_and_las_state_the_reference_system(self):
+        given = {"las": True, "epsg": 32617, "until": "page", "earlier": "old/mesh.ply"}
+        commands = {step.name: " ".join(step.command) for step in reconstruct_steps.steps(
+            options_of(**given), self.folder / "out")}
+        for name in ("map", "compare", "las"):
+            self.assertIn("--epsg 32617", commands[name])
+        own = {step.name: " ".join(step.command) for step in reconstruct_steps.steps(
+            options_of(**given, map="--epsg 1"), self.folder / "out")}
+        self.assertTrue(own["map"].endswith("--epsg 1") and "32617" not in own["map"], own["map"])
+        self.assertIn("neither --control nor --scale-from positions:", self.refused("--epsg", "32617"))
+        self.write("known.txt", "0.png 1 2 3\n")
+        self.assertIn("must be from 0 to", self.refused("--epsg", "-1", "--scale-from", "positions:known.txt"))
+
     def test_an_earlier_survey_is_compared(self):
         self.write("before/scene_dense_mesh.ply", "")
         said = self.succeeds("--earlier", "before", "--without", "refine-mesh,texture,map,page")

@@ -43,6 +43,7 @@ case "$name $*" in
   ReconstructMesh*) touch out/scene_dense_mesh.ply ;;
   RefineMesh*) touch out/scene_dense_refined.ply ;;
   TextureMesh*) touch out/scene_textured.glb out/scene_textured.ply ;;
+  TransformScene*) touch out/scene_dense.las ;;
   CompareSurveys*) touch out/scene.change.json ;;
   MapSurface*) touch out/scene_map.dem.tif out/scene_map.ortho.tif out/scene_map.views.tif ;;
 esac
@@ -57,7 +58,7 @@ class StandIns(InFolder):
     def setUp(self):
         super().setUp()
         self.put_on_path()
-        for name in ("colmap", *NAMES):
+        for name in ("colmap", *NAMES, "TransformScene"):
             self.write(name, STAND_IN).chmod(0o755)
         for name in ("lens", "housing"):
             self.write(name, "")

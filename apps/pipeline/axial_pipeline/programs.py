@@ -117,6 +117,9 @@ class Programs:
         program = (self.folder / "ViewScene").resolve()
         return (program.parent.parent / "share" / "axialmvs" / "view" / "viewer.js").exists()
 
+    def write_as_las(self, cloud, las, *options):
+        return [self.folder / "TransformScene", "-i", cloud, "-o", las, *options]
+
     def refine_poses(self, model, lens, housing, output, *options):
         return [self.folder / "RefinePoses", "-i", model, "--lens", lens, "--housing", housing, "-o",
                 output, *options]

@@ -22,7 +22,7 @@ import pathlib
 from . import cluster, control, dates, files, ownership, poses, still_features, video
 from .failure import Failure, run_main
 from .reconstruct_options import check_options, check_photographs, options, wanted_steps
-from .reconstruct_steps import RESTORED, best_mesh, final_cloud, steps
+from .reconstruct_steps import RESTORED, best_mesh, final_cloud, las_of, steps
 from .step_kinds import ORDER
 from .steps import run_all
 
@@ -122,6 +122,8 @@ def results_of(given, out):
     wanted = wanted_steps(given)
     textured = f"scene_textured.tile*-{given.tiles}.glb" if given.tiles > 1 else "scene_textured.glb"
     found = [("Cloud", final_cloud(given, out)) if "densify" in wanted else ("Poses", out / "refined")]
+    if "las" in wanted:
+        found.append(("LAS", las_of(given, out)))
     if "mesh" in wanted:
         found.append(("Mesh", out / textured if "texture" in wanted else best_mesh(given, out)))
     if "colors" in wanted:

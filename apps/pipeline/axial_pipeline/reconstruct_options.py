@@ -17,8 +17,8 @@ from .step_kinds import KINDS, OF_REMATCHING, OF_RESTORING, OPTIONS, ORDER, RESU
 from .steps import record_file
 
 SKIPPED = [name for name, kind in KINDS.items() if kind.can_be_left_out]
-MOST_TILES = 1000  # as in the programs
-OPTIONAL = ("frames", "masks", "targets", "refine-mesh", *OF_RESTORING)  # steps that many runs do not have
+MOST_TILES, MOST_EPSG = 1000, 1 << 20  # as in the programs
+OPTIONAL = ("frames", "masks", "targets", "refine-mesh", *OF_RESTORING, "las")  # steps that many runs do not have
 
 
 def options(script_folder, description, words=None):
@@ -63,6 +63,10 @@ def options(script_folder, description, words=None):
                         "that the photographs have without water (docs/colors.md)")
     parser.add_argument("--match-restored", action="store_true", help="with --restore-colors: match the photographs "
                         "without water again, and make the final cloud and mesh from them, for hazy water")
+    parser.add_argument("--las", action="store_true", help="write the cloud as LAS 1.4, too (docs/formats.md)")
+    parser.add_argument("--epsg", type=int, default=0, metavar="CODE",
+                        help="EPSG code of the coordinate reference system of --control or --scale-from positions:, a "
+                        "projected one in metres, which maps and LAS then state")
     for name, program in OPTIONS.items():
         parser.add_argument(f"--{name}", default="",
                             help=f"more options for {program}, in one word" +
@@ -166,7 +170,7 @@ def wanted_steps(given):
     last, left_out = RESULTS.index(given.until), skipped(given)
     return [name for name, kind in KINDS.items()
             if kind.result and RESULTS.index(kind.result) <= last and name not in left_out
-            and (name != "compare" or given.earlier)
+            and (name != "compare" or given.earlier) and (name != "las" or given.las)
             and (name not in OF_RESTORING or is_of_restoring(name, given, left_out))]
 
 
@@ -180,6 +184,8 @@ def check_results(given):
         if value and result and RESULTS.index(given.until) < RESULTS.index(result):
             raise Failure(f"--{name} {value}: {OPTIONS[name]} does not run with --until {given.until}")
     check_restoring(given)
+    if given.las and given.until == "poses":
+        raise Failure("--las: is for the cloud, which --until poses does not make")
     if given.compare and not given.earlier:
         raise Failure(f"--compare {given.compare}: is only for --earlier")
     if given.earlier and given.until in ("poses", "cloud"):
@@ -189,6 +195,17 @@ def check_results(given):
     if given.cluster and given.until == "poses":
         raise Failure(f"--cluster {given.cluster}: is for the steps after the poses, which --until poses does "
                       "not run")
+
+
+def check_las(given):
+    """Checks --las and --epsg."""
+    if given.las:
+        require(given.programs, ["TransformScene"])
+    if given.epsg and not (given.control or positions.file_of(given.scale_from)):
+        raise Failure(f"--epsg {given.epsg}: is for coordinates of this system, and neither --control nor "
+                      "--scale-from positions: gives some")
+    if not 0 <= given.epsg <= MOST_EPSG:
+        raise Failure(f"--epsg {given.epsg}: must be from 0 to {MOST_EPSG}")
 
 
 def check_mask_labels(given):
@@ -300,6 +317,7 @@ def check_options(given):
     check_tiles(given)
     given.until = last_result(given)
     check_results(given)
+    check_las(given)
     if given.earlier:
         given.earlier = str(mesh_of_earlier_survey(pathlib.Path(given.earlier)))
     if given.snakemake and not given.cluster:

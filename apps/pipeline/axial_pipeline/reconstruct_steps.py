@@ -33,6 +33,15 @@ def final_cloud(given, out):
     return out / ("scene_restored.ply" if "restored-mesh" in wanted_steps(given) else "scene_dense.ply")
 
 
+def shown_cloud(given, out):
+    """The cloud that users look at: with --restore-colors, the one with these colours."""
+    return out / ("scene_restored.ply" if "restored-cloud" in wanted_steps(given) else "scene_dense.ply")
+
+
+def las_of(given, out):
+    return shown_cloud(given, out).with_suffix(".las")
+
+
 def restored_meshes(out):
     """The files of the mesh and of the refined mesh of --match-restored."""
     return out / "scene_restored_mesh.ply", out / "scene_restored_refined.ply"
@@ -67,6 +76,10 @@ class Run:
     def tiles(self):
         """The option of a program for the tiles."""
         return ("--tiles", self.given.tiles) if self.given.tiles > 1 else ()
+
+    def system(self, words=()):
+        """The option of a program for the coordinate reference system, unless it is among the `words` of the user."""
+        return not_given_again([("--epsg", self.given.epsg)] if self.given.epsg else [], words)
 
     def step(self, name, command, makes, reads=(), also=(), **more):
         """The step of a program. It reads what the words of its option name, too, but not the masks of this run: the
@@ -303,7 +316,8 @@ def map_step(run, name, mesh, output, *options):
     if name == "raw-map":
         words = without_options(words, ("--colors",))
     command = run.programs.map_surface(run.scene, mesh, output, *REFRACTIVE,
-                                       *mask_words(run.words("texture"), words), *options, *words)
+                                       *mask_words(run.words("texture"), words), *options,
+                                       *run.system(words), *words)
     made = [output.with_name(f"{output.name}.{kind}.tif") for kind in ("dem", "ortho", "views")]
     also = [*read_by(command, run.own("texture")), *(read_by(command, run.own("map")) if name != "map" else [])]
     return run.step(name, command, Files(*made), also=also,
@@ -329,13 +343,13 @@ def survey_steps(run, wanted):
         earlier, words = pathlib.Path(given.earlier).with_name(run.scene.name), run.words("compare")
         registration, places = words_about_registration(run, words)
         command = programs.compare_surveys(given.earlier, best_mesh(given, out), out / "scene",
-                                           *words_about_surveys(words, registration, earlier, run.scene), *words)
+                                           *words_about_surveys(words, registration, earlier, run.scene),
+                                           *run.system(words), *words)
         yield run.step("compare", command, out / "scene.change.json", reads=[given.earlier, earlier, *places[:1]],
                        anew=run.made_before("compare"))
     if "page" in wanted:
-        cloud = out / ("scene_restored.ply" if "restored-cloud" in wanted else "scene_dense.ply")
-        command = programs.view_scene(run.scene, cloud, whole_mesh(run, wanted), out / "page", *REFRACTIVE,
-                                      *words_about_results(run, wanted), *run.words("page"))
+        command = programs.view_scene(run.scene, shown_cloud(given, out), whole_mesh(run, wanted), out / "page",
+                                      *REFRACTIVE, *words_about_results(run, wanted), *run.words("page"))
         yield run.step("page", command, out / "page" / "index.html", also=[given.truth] if given.truth else [],
                        before=lambda: write_run_before("page", given, out))
 
@@ -365,3 +379,6 @@ def steps(given, out):
         command = run.programs.evaluate(final_cloud(given, out), given.truth, "--json", out / "evaluation.json",
                                         "--align", "icp")
         yield run.step("evaluate", command, Report(out / "evaluation.json"), reads=[given.truth])
+    if "las" in wanted:
+        las = las_of(given, out)
+        yield run.step("las", run.programs.write_as_las(shown_cloud(given, out), las, *run.system()), las)

@@ -68,7 +68,9 @@ KINDS = {
                     has_limits=True),
     "page": Kind(["page", "run.json", "run.json.tmp"], (8000, 1, 30, 0.05), "ViewScene", result="page",
                  can_be_left_out=True),
-    "evaluate": Kind(["evaluation.json"], (8000, 0, 60, 0))}
+    "evaluate": Kind(["evaluation.json"], (8000, 0, 60, 0)),
+    # The last step, so that a run that is done makes nothing again if --las is added.
+    "las": Kind(["scene_dense.las", "scene_restored.las"], (500, 0, 30, 0.02), result="cloud")}
 ORDER = list(KINDS)
 NEEDS_OF_PLAN = (2000, 2, 30, 0.02)  # as needs, of the job "plan"
 # Steps of --restore-colors, and those of them that only --match-restored has.
