@@ -66,7 +66,7 @@ void declare_io(OptionList& list, densify::Options& settings) {
                   "if it has one (<scene>.geo.json), or double, in world coordinates")
       .add("pinhole-export", &settings.output.pinhole_export,
            "folder to write photographs, depth maps, cloud and scene to, resampled into pinhole "
-           "cameras for OpenMVS's later programs")
+           "cameras for OpenMVS's later programs, and a COLMAP model for trainers of splats")
       .output_folder()
       .add("report-file", &settings.output.report,
            "write the agreement of depth maps, sparse points and cameras to this file (.json)")

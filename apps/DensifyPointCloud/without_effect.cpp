@@ -77,7 +77,7 @@ void warn_of_options_without_effect(const Options& options) {
     warn_of(options, {"remove-dmaps", "report-file"}, "with --tile, which makes no whole cloud");
   if (!settings.fusion.fuse)
     warn_of_fusion(options, "with --fusion-mode 1, which makes only depth maps");
-  else if (!settings.fusion.needs_colors() &&
+  else if (!settings.fusion.needs_colors() && settings.output.pinhole_export.empty() &&
            !(settings.survey.match_colors && settings.matching.make_maps))
     warn_of(options, {"colors"}, "with --estimate-colors 0");
 }

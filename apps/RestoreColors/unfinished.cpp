@@ -108,14 +108,7 @@ void Unfinished::write(std::size_t view, const color::Restored& restored, int jp
 
 void Unfinished::give_to(const fs::path& folder) const {
   for (const auto* list : {&names_.photographs, &names_.masks})
-    for (const fs::path& name : *list) {
-      const fs::path from = folder_ / name, to = folder / name;
-      make_folder(to.parent_path());
-      std::error_code error;
-      fs::create_hard_link(from, to, error);
-      if (error) fs::copy_file(from, to, error);
-      if (error) fail_in(to, "cannot be written: {}", error.message());
-    }
+    for (const fs::path& name : *list) link_or_copy(folder_ / name, folder / name);
 }
 
 void Unfinished::remove() const {

@@ -353,6 +353,14 @@ void make_folder(const std::filesystem::path& folder) {
     fail_in(folder, "cannot be created ({})", error.message());
 }
 
+void link_or_copy(const std::filesystem::path& from, const std::filesystem::path& to) {
+  make_folder(to.parent_path());
+  std::error_code error;
+  std::filesystem::create_hard_link(from, to, error);
+  if (error) std::filesystem::copy_file(from, to, error);
+  if (error) fail_in(to, "cannot be written: {}", error.message());
+}
+
 std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) fail_in(path, "is a folder, not a file");

@@ -95,6 +95,11 @@ void require_writable_folder(const std::filesystem::path& folder);
 // it is not a folder afterwards.
 void make_folder(const std::filesystem::path& folder);
 
+// Makes the file `to`, which must not exist, another name of the file `from`: a hard link, or where
+// the disk has none a copy. Makes the folder of `to` if it is missing. Throws an Error that names
+// `to` if it cannot be written.
+void link_or_copy(const std::filesystem::path& from, const std::filesystem::path& to);
+
 // Returns the content of the whole file, byte by byte. Throws an Error that names `path` if it is
 // not a regular file, cannot be read, or is larger than `max_bytes` (default: no limit).
 std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes = UINTMAX_MAX);

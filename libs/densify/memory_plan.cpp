@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "cloud/fuse.h"
 #include "densify/pinhole_export.h"
+#include "densify/pinhole_model.h"
 #include "densify/tiles.h"
 #include "depth/filters.h"
 #include "depth/patch_match.h"
@@ -171,6 +172,10 @@ StageBytes bytes_of_stages(const Project& project, const Options& options,
   }
   bytes.scene = allocated_memory();
   bytes.write_scene = io::count_scene(project.scene).writing_bytes();
+  if (exports) {
+    bytes.shown = bytes_of_pinhole_points(project.scene);
+    bytes.model = bytes_needed_for_pinhole_model(project.scene);
+  }
   bytes.decode = survey::bytes_needed_to_load(decode, pixels);
   bytes.image = survey::bytes_needed(survey::PixelsSize{pixels, masks, colors});
   bytes.map = bytes_of_map(pixels);
@@ -186,7 +191,8 @@ StageBytes bytes_of_stages(const Project& project, const Options& options,
 
 std::uint64_t least_bytes(const StageBytes& bytes, const ListLengths& lists,
                           std::size_t in_flight) {
-  return std::max({matching(bytes, lists, in_flight), bytes.write_scene, bytes.exported,
+  const std::uint64_t exporting = bytes.shown + std::max(bytes.exported, bytes.model);
+  return std::max({matching(bytes, lists, in_flight), bytes.write_scene, exporting,
                    in_flight * lists.matched * bytes.image + fusing(bytes, lists.fused, 1)});
 }
 
@@ -214,7 +220,8 @@ MemoryPlan share_out(const StageBytes& bytes, const ListLengths& lists, std::uin
   plan.fusion_loads = most(std::min(threads, lists.fused), room - kept, fuse);
   plan.least_fused_maps = lists.fused;
   plan.marked_views = lists.marked;
-  plan.exports = most(threads, room, [&](std::size_t k) { return k * bytes.exported; });
+  plan.exports =
+      most(threads, room - bytes.shown, [&](std::size_t k) { return k * bytes.exported; });
   plan.fused_maps = enlarged(lists.fused, bytes.fused, room - kept - fuse(plan.fusion_loads));
   return plan;
 }

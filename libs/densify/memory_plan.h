@@ -74,6 +74,8 @@ struct StageBytes {
   std::uint64_t fused = 0;        // one map in fusion, with its image if the cloud has colours
   std::uint64_t taken = 0;        // fusion: one bit per pixel of ListLengths::marked views
   std::uint64_t exported = 0;     // pinhole export: while one image is resampled; 0: no export
+  std::uint64_t shown = 0;        // pinhole export: the points of all images; 0: no export
+  std::uint64_t model = 0;        // the same, while their model is written, in addition
 };
 
 // Returns the memory of each stage. `lists`: the result of longest_lists(). StageBytes::scene is

@@ -12,6 +12,7 @@
 #include "cloud/pinhole_resampling.h"
 #include "densify/cloud_exports.h"
 #include "densify/pinhole_folder.h"
+#include "densify/pinhole_model.h"
 #include "io/artifacts/written_files.h"
 #include "io/bytes/json.h"
 #include "io/cameras/geo_offset.h"
@@ -22,7 +23,7 @@
 #include "io/openmvs/mvs.h"
 #include "io/ply/ply.h"
 #include "scene/resolution.h"
-#include "survey/image_store.h"
+#include "survey/photographs.h"
 
 namespace axial::densify {
 namespace fs = std::filesystem;
@@ -44,6 +45,7 @@ class Export {
         at_once_(at_once),
         context_(context),
         photographs_(io::common_image_folder(project.scene)),
+        points_(project.scene, project.references),
         exported_(project.scene.images.size()),
         is_exported_(project.scene.images.size(), false) {
     for (const std::size_t image : project.references) is_exported_[image] = true;
@@ -55,6 +57,7 @@ class Export {
       folder_ = fs::absolute(folder);
       export_images();
       export_cloud();
+      export_model();
       export_scene();
       export_marker();
       remove_earlier_export(output_.pinhole_export, folder_, context_);
@@ -107,6 +110,7 @@ class Export {
   void write_image(std::size_t image, const cloud::PinholeImage& pinhole) {
     constexpr int kQuality = 98;  // the image is compressed a second time: little loss
     const fs::path file = image_file(image);
+    make_folder(file.parent_path());
     if (is_jpeg_name(file))
       io::write_jpeg(file, pinhole.color, kQuality);
     else
@@ -114,14 +118,22 @@ class Export {
     io::write_png(io::mask_beside(file), pinhole.label);
     const int exact = cv::countNonZero(pinhole.label == cloud::kExact);
     exported_[image].exact = exact / static_cast<double>(pinhole.label.total());
+    write_for_trainers(file, pinhole.label);
+  }
+
+  // Trainers expect a folder of images without masks, and masks of two values in another folder.
+  void write_for_trainers(const fs::path& file, const cv::Mat1b& label) const {
+    const fs::path name = file.lexically_relative(folder_ / "images");
+    link_or_copy(file, folder_ / kPinholeModel / "images" / name);
+    fs::path mask = folder_ / kPinholeModel / "masks" / name;
+    make_folder(mask.parent_path());
+    io::write_png(mask.replace_extension(".png"), label != cloud::kNothing);
   }
 
   void export_image(std::size_t image) {
-    const SceneImage& from = project_.scene.images[image];
-    io::Photograph photograph = io::read_photograph(from.path);
-    const cv::Mat3b color = io::in_8_bits(photograph.pixels, project_.bit_depth);
-    photograph.pixels.release();
-    const CameraModel camera = from.camera.resized(color.cols, color.rows);
+    const survey::FullPhotograph photograph = survey::read_full_photograph(project_, image);
+    const cv::Mat3b& color = photograph.color;
+    const CameraModel camera = project_.scene.images[image].camera.resized(color.cols, color.rows);
     const cloud::PinholeView view = cloud::pinhole_for(camera, near_, far_);
     exported_[image].view = view;
     DepthMap map = load_map(image, photograph.opaque);
@@ -131,12 +143,13 @@ class Export {
     const cv::Mat1f coarse = cloud::render_surface(map, small);
     export_map(image, std::move(map), small, coarse);
     const cv::Mat1f guess = cloud::filled(coarse, static_cast<float>((1 / near_ + 1 / far_) / 2));
-    write_image(image, cloud::resampled(color, photograph.opaque, camera, view, surface, guess));
+    const cloud::PinholeImage pinhole =
+        cloud::resampled(color, photograph.opaque, camera, view, surface, guess);
+    points_.find(image, view, pinhole);
+    write_image(image, pinhole);
   }
 
   void export_images() {
-    for (const std::size_t image : project_.references)
-      make_folder(image_file(image).parent_path());
     const std::size_t count = project_.references.size();
     ProgressCounter counter(context_.stage("Exported pinhole images"), count);
     FirstError error;
@@ -177,11 +190,24 @@ class Export {
     return result;
   }
 
+  std::vector<SceneImage> exported_scene_images() const {
+    std::vector<SceneImage> images;
+    for (std::size_t i = 0; i < exported_.size(); ++i) images.push_back(exported_scene_image(i));
+    return images;
+  }
+
+  void export_model() {
+    Scene exported;
+    exported.images = exported_scene_images();
+    points_.give_to(exported);
+    model_ =
+        write_pinhole_model(folder_ / kPinholeModel / "sparse" / "0", exported, folder_ / "images");
+  }
+
   void export_scene() {
     Scene& scene = project_.scene;
     Scene exported;
-    for (std::size_t i = 0; i < scene.images.size(); ++i)
-      exported.images.push_back(exported_scene_image(i));
+    exported.images = exported_scene_images();
     exported.region = scene.region;
     exported.points = std::move(scene.points);
     exported.point_normals = std::move(scene.point_normals);
@@ -228,6 +254,8 @@ class Export {
         "{}: {} pinhole images, {:.1f} % of their pixels on a known surface: OpenMVS's programs "
         "can use scene.mvs, scene.ply and the depth maps in this folder",
         output_.pinhole_export.string(), count, 100 * exact / static_cast<double>(count));
+    context_.info("{}: COLMAP model of {} pinhole images and {} points, for trainers of splats",
+                  (output_.pinhole_export / kPinholeModel).string(), model_.images, model_.points);
   }
 
   Project& project_;
@@ -236,7 +264,9 @@ class Export {
   std::size_t at_once_;
   const Context& context_;
   fs::path photographs_, folder_;
-  double near_ = 0, far_ = 0;       // lambda [m]
+  double near_ = 0, far_ = 0;  // lambda [m]
+  PinholePoints points_;
+  PinholeModelSize model_;
   std::vector<Exported> exported_;  // one for each image of the scene
   std::vector<bool> is_exported_;
 };
@@ -247,9 +277,12 @@ std::uint64_t bytes_needed_to_resample(const View& view) {
   const auto area = [](cv::Size size) { return static_cast<std::uint64_t>(size.area()); };
   const std::uint64_t photograph = area(view.header.size);
   // Photograph and opacity; depth, colour, label and the encoded colour of a pinhole at most 1.4
-  // times as wide and as high. While the photograph is read, the memory for reading.
+  // times as wide and as high. While the photograph or its colours are read, the memory for
+  // reading.
+  const unsigned decode =
+      std::max(view.header.decode_bytes, view.colors.empty() ? 0 : view.colors_header.decode_bytes);
   const std::uint64_t images =
-      std::max<std::uint64_t>(view.header.decode_bytes + 4, 4 + 2 * (4 + 3 + 1 + 4)) * photograph;
+      std::max<std::uint64_t>(decode + 4, 4 + 2 * (4 + 3 + 1 + 4)) * photograph;
   // The map, the map of the pinhole and the memory for writing it; two depth images, filled.
   const std::uint64_t pixels = area({view.camera.width, view.camera.height});
   const std::uint64_t pinhole = bytes_of_map(pixels) + io::dmap_bytes_needed(pixels) + 16 * pixels;

@@ -54,6 +54,8 @@ void check_folder(const Project& project, const fs::path& folder) {
   add(project.file().parent_path());
   add(project.options.files.working_folder);
   for (const SceneImage& image : project.scene.images) add(fs::path(image.path).parent_path());
+  for (const View& view : project.views)
+    if (!view.colors.empty()) add(view.colors.parent_path());
   for (const fs::path& input : inputs)
     if (fs::equivalent(folder, input, error))
       fail("{} {}: contains inputs of this run", name, folder.string());

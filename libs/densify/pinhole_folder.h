@@ -18,6 +18,9 @@ inline constexpr const char* kPinholeMarker = "pinhole_export.json";
 std::filesystem::path exported_name(const SceneImage& image,
                                     const std::filesystem::path& photographs);
 
+// The folder of the COLMAP model and its images in the folder of the export.
+inline constexpr const char* kPinholeModel = "colmap";
+
 // Removes the files of an earlier export, which are listed in its kPinholeMarker, from `folder`.
 // `staging`: the folder with the new export, whose files will be moved into `folder` later. A file
 // stays in two cases: `staging` contains a file with the same relative path, or the file was
@@ -28,8 +31,8 @@ void remove_earlier_export(const std::filesystem::path& folder,
 
 // Checks, before the work, whether the export can be written to `folder`. Throws an Error
 // - if no camera has a port or a distorted lens,
-// - if the folder contains inputs of this run (the scene file, photographs or the working folder),
-//   or is not empty and not an earlier export,
+// - if the folder contains inputs of this run (the scene file, photographs, files of their colours
+//   or the working folder), or is not empty and not an earlier export,
 // - if the folder is a file or cannot be written,
 // - if two images would be exported to the same file.
 void check_pinhole_export(const Project& project, const std::filesystem::path& folder);

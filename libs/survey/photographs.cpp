@@ -65,6 +65,19 @@ cv::Mat1b working_mask(const View& view, const cv::Mat1b& opaque, int ignored_la
   return mask;
 }
 
+FullPhotograph read_full_photograph(const Survey& survey, std::size_t view) {
+  const View& from = survey.views[view];
+  FullPhotograph result;
+  if (from.colors.empty() || from.header.alpha) {
+    io::Photograph photograph = io::read_photograph(from.file);
+    result.opaque = photograph.opaque;
+    if (from.colors.empty()) result.color = io::in_8_bits(photograph.pixels, survey.bit_depth);
+  }
+  if (!from.colors.empty())
+    result.color = io::in_8_bits(io::read_photograph(from.colors).pixels, kBitsOfColors);
+  return result;
+}
+
 Photographs::Photographs(const Survey& survey)
     : survey_(survey), labels_(survey.options.ignore_mask_label) {}
 

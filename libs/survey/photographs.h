@@ -20,6 +20,17 @@ struct Pixels {
 
 enum class Channels { grey, color, both };
 
+// A photograph in its full size and in 8 bits.
+struct FullPhotograph {
+  cv::Mat3b color;   // B G R, of View::colors if the view has such a file
+  cv::Mat1b opaque;  // 0 where the photograph is fully transparent, else 255; empty: nowhere
+};
+
+// Reads a photograph of `survey`, whose views must be found and whose photographs are files.
+// `view`: index into Survey::views. The photograph is not decoded if View::colors gives all. Error
+// for a file that cannot be decoded.
+FullPhotograph read_full_photograph(const Survey& survey, std::size_t view);
+
 // The pixels of a view that may be used because of its mask and its transparency: non-zero where
 // the label in the file `view.mask` is not `ignored_label` and where `opaque`, resampled, is 255.
 // The result has the size of `view.camera`, and is empty if `view.mask` and `opaque` are both

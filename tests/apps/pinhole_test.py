@@ -8,7 +8,7 @@ import re
 import shutil
 
 from programs import cloud_size, contents, files_below, main, must, read, run, write
-from readers import Dmap, Mvs, Ply, png_size, with_paths
+from readers import ColmapModel, Dmap, Mvs, Ply, png_size, with_paths
 from worlds import QUICK, Densified, geo_offset
 
 VIEWS = Densified.VIEWS
@@ -44,7 +44,7 @@ class Files(Exports):
         folder = self.at("work", "pinholes")
         names = {f"images/{i:04}{end}" for i in range(VIEWS) for end in (".jpg", ".mask.png")}
         names |= {f"depth{i:04}.dmap{end}" for i in range(VIEWS) for end in ("", ".json")}
-        self.assertEqual(files_below(folder),
+        self.assertEqual({name for name in files_below(folder) if not name.startswith("colmap/")},
                          names | {"scene.mvs", "scene.ply", "pinhole_export.json"})
         scene = Mvs(read(os.path.join(folder, "scene.mvs")))
         self.assertEqual(len(scene.platforms), 1)  # one lens and port: one pinhole
@@ -97,7 +97,10 @@ class Files(Exports):
         scene = Mvs(read(os.path.join(folder, "scene.mvs")))
         self.assertEqual([scene.camera(i) is None for i in range(VIEWS)], [i == 1 for i in range(VIEWS)])
         self.assertTrue(all(views and 1 not in views for _, views in scene.points))
-        self.assertFalse(os.path.exists(os.path.join(folder, "images", "0001.jpg")))
+        for images in ("images", "colmap/images"):
+            self.assertFalse(os.path.exists(os.path.join(folder, images, "0001.jpg")))
+        model = ColmapModel(os.path.join(folder, "colmap", "sparse", "0"))
+        self.assertEqual(sorted(model.images), [1, 3, 4, 5])
         self.assertIn("4 of 4 images have a depth map", self.said(folder, "--fusion-mode", "-1"))
 
     def test_photographs_in_folders(self):
@@ -109,8 +112,13 @@ class Files(Exports):
         write(scene, with_paths(read(scene), lambda path: "photos/" + changed[os.path.basename(path)]))
         folder = self.export(work)
         for name, moved in changed.items():
-            self.assertEqual(read(os.path.join(folder, "images", moved)),
-                             read(self.at("work", "pinholes", "images", name)))
+            mask = moved.replace(".jpg", ".png")
+            for exported, expected in ((f"images/{moved}", f"images/{name}"),
+                                       (f"colmap/images/{moved}", f"images/{name}"),
+                                       (f"colmap/masks/{mask}", f"colmap/masks/{name.replace('.jpg', '.png')}")):
+                self.assertEqual(read(os.path.join(folder, exported)), read(self.at("work", "pinholes", expected)))
+        model = ColmapModel(os.path.join(folder, "colmap", "sparse", "0"))
+        self.assertEqual([image[3] for image in model.images.values()], list(changed.values()))
 
     def assert_same_points(self, cloud, expected):
         """Positions may differ by rounding: a double has a resolution of 5e-10 m at these world coordinates."""
@@ -131,7 +139,8 @@ class Files(Exports):
             self.assertEqual(cloud.offset, OFFSET)
             self.assert_same_points(cloud, expected)
             self.assertEqual(json.loads(read(os.path.join(folder, "scene.geo.json")))["geo_offset"], list(OFFSET))
-            for name in ("scene.mvs", "images/0003.jpg", "depth0003.dmap"):
+            for name in ("scene.mvs", "images/0003.jpg", "depth0003.dmap", "colmap/sparse/0/images.bin",
+                         "colmap/sparse/0/points3D.bin"):
                 self.assertEqual(read(os.path.join(folder, name)),
                                  read(self.at("work", "pinholes", name)))
 

@@ -183,6 +183,52 @@ class Dmap:
                 + (self.normals if normals else b"") + self.rest)
 
 
+class ColmapModel:
+    """A binary model of COLMAP. `cameras`: number of the camera model, width, height and parameters by id; `images`:
+    quaternion, translation, camera, name and observations (x, y, point) by id; `points`: coordinates, colour, error
+    and track (image, observation) by id."""
+    PARAMETERS = {1: 4}  # PINHOLE
+
+    def __init__(self, folder):
+        parts = [read(os.path.join(folder, name + ".bin")) for name in ("cameras", "images", "points3D")]
+        self.cameras, self.images, self.points = map(self.records, parts, (self.camera, self.image, self.point))
+
+    def records(self, data, record):
+        self.data, self.at = data, 0
+        found = dict(record() for _ in range(self.numbers("Q")[0]))
+        assert self.at == len(data)
+        return found
+
+    def numbers(self, kinds):
+        values = struct.unpack_from("<" + kinds, self.data, self.at)
+        self.at += struct.calcsize("<" + kinds)
+        return values
+
+    def rows(self, kinds):
+        return [self.numbers(kinds) for _ in range(self.numbers("Q")[0])]
+
+    def camera(self):
+        key, model, width, height = self.numbers("IiQQ")
+        return key, (model, width, height, self.numbers(f"{self.PARAMETERS[model]}d"))
+
+    def image(self):
+        key, *pose, camera = self.numbers("I7dI")
+        end = self.data.index(b"\0", self.at)
+        name, self.at = self.data[self.at:end].decode(), end + 1
+        return key, (pose[:4], pose[4:], camera, name, self.rows("ddQ"))
+
+    def point(self):
+        key, x, y, z, *color, error = self.numbers("Q3d3Bd")
+        return key, ((x, y, z), tuple(color), error, self.rows("II"))
+
+    def project(self, image, place):
+        """The pixel (x, y) of a place in an image of a pinhole, with pixel centres at 0.5, and the z-depth."""
+        turn, shift, camera, *_ = self.images[image]
+        x, y, z = added(rotated(turn, place), shift)
+        _, _, _, (fx, fy, cx, cy) = self.cameras[camera]
+        return fx * x / z + cx, fy * y / z + cy, z
+
+
 class Glb:
     """A binary glTF 2.0."""
 
@@ -224,12 +270,12 @@ def png_size(data):
 
 
 def png_samples(data):
-    """The size and the number of channels of a PNG of 8 bits in RGB or RGBA, and its bytes, which have to be
+    """The size and the number of channels of a PNG of 8 bits in grey, RGB or RGBA, and its bytes, which have to be
     complete: a filter and the samples of each row."""
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
     width, height, bits, kind = struct.unpack_from(">IIBB", data, 16)
-    assert bits == 8 and kind in (2, 6)
-    channels, at, packed = 3 if kind == 2 else 4, 8, b""
+    channels, at, packed = {0: 1, 2: 3, 6: 4}[kind], 8, b""
+    assert bits == 8
     while at < len(data):
         length, name = struct.unpack_from(">I4s", data, at)
         packed += data[at + 8:at + 8 + length] if name == b"IDAT" else b""

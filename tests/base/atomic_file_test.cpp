@@ -277,6 +277,19 @@ TEST(WriteTogether, GivesAllFilesOrNone) {
   fs::remove_all(folder);
 }
 
+TEST(LinkOrCopy, GivesTheContentAndKeepsFiles) {
+  const fs::path folder = test::empty_folder();
+  write_atomically(folder / "a.txt", "text");
+  link_or_copy(folder / "a.txt", folder / "new" / "b.txt");
+  EXPECT_EQ(contents_of(folder),
+            (std::map<std::string, std::string>{{"a.txt", "text"}, {"new/b.txt", "text"}}));
+  write_atomically(folder / "a.txt", "other");  // replaces the file, and not its content
+  EXPECT_EQ(contents_of(folder).at("new/b.txt"), "text");
+  EXPECT_THROW(link_or_copy(folder / "a.txt", folder / "new" / "b.txt"), Error);
+  EXPECT_THROW(link_or_copy(folder / "none.txt", folder / "c.txt"), Error);
+  fs::remove_all(folder);
+}
+
 void write_model(const fs::path& folder, const std::string& text) {
   make_folder(folder / "sparse");
   write_atomically(folder / "report.json", text);

@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "cloud/fuse.h"
 #include "densify/pinhole_export.h"
+#include "densify/pinhole_model.h"
 #include "depth/filters.h"
 #include "depth/patch_match.h"
 #include "io/openmvs/dmap.h"
@@ -29,6 +30,7 @@ constexpr std::size_t kImages = 60, kSources = 6, kNeighbours = 9, kAdjusting = 
 Project sixty_images() {
   Project project;
   project.scene.images.resize(kImages);
+  project.scene.points.assign(50000, {{}, {{0, 0}, {1, 0}, {2, 0}}});
   project.sources.assign(kImages, std::vector<ViewScore>(kSources - 1));
   project.neighbours.assign(kImages, std::vector<ViewScore>(kNeighbours - 1));
   project.sources.back().resize(kSources);
@@ -67,6 +69,8 @@ class Held {
         colors_(from.options.fusion.needs_colors()),
         adjusts_((from.options.matching.postprocess & kAdjust) != 0),
         masks_(std::ranges::any_of(from.project.views, &View::masked)),
+        shown_(bytes_of_pinhole_points(from.project.scene)),
+        model_(bytes_needed_for_pinhole_model(from.project.scene)),
         view_(from.project.views.back()) {}
 
   std::uint64_t images() const {
@@ -96,7 +100,9 @@ class Held {
                (decode() + bytes_of_map(kPixels) + io::dmap_bytes_needed(kPixels)) +
            cloud::bytes_needed({kPixels, kImages, plan_.fused_maps, colors_});
   }
-  std::uint64_t exporting() const { return plan_.exports * bytes_needed_to_resample(view_); }
+  std::uint64_t exporting() const {
+    return shown_ + std::max(plan_.exports * bytes_needed_to_resample(view_), model_);
+  }
 
   std::uint64_t most() const {
     return std::max(
@@ -110,6 +116,7 @@ class Held {
 
   MemoryPlan plan_;
   bool colors_, adjusts_, masks_;
+  std::uint64_t shown_, model_;
   View view_;
 };
 
@@ -122,6 +129,8 @@ TEST(StageBytes, AreThoseOfTheStagesForTheLargestImageAndTheLongestLists) {
   EXPECT_EQ(bytes.decode,
             survey::bytes_needed_to_load(16 * kPixels, kPixels));  // 2 x 2 of 4 bytes each
   EXPECT_EQ(bytes.exported, bytes_needed_to_resample(all.project.views.back()));
+  EXPECT_EQ(bytes.shown, bytes_of_pinhole_points(all.project.scene));
+  EXPECT_EQ(bytes.model, bytes_needed_for_pinhole_model(all.project.scene));
   EXPECT_EQ(bytes.write_scene, io::count_scene(all.project.scene).writing_bytes());
   EXPECT_EQ(bytes.taken + 7 * bytes.fused, cloud::bytes_needed({kPixels, kImages, 7, true}));
   const ListLengths lists = all.lists();
@@ -138,6 +147,8 @@ TEST(StageBytes, DependOnWhatTheOptionsAskFor) {
   few.project.views[3].mask = "mask.png";
   EXPECT_EQ(few.bytes().adjust, 0u);
   EXPECT_EQ(few.bytes().exported, 0u);
+  EXPECT_EQ(few.bytes().shown, 0u);
+  EXPECT_EQ(few.bytes().model, 0u);
   EXPECT_EQ(few.bytes().image, survey::bytes_needed(survey::PixelsSize{kPixels, true, false}));
   EXPECT_EQ(few.bytes().fused, cloud::bytes_needed({kPixels, 0, 1, false}));
   // Fewer maps than neighbours.

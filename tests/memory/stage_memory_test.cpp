@@ -15,6 +15,7 @@
 
 #include "base/memory.h"
 #include "cloud/fusion_map.h"
+#include "densify/pinhole_model.h"
 #include "depth/filters.h"
 #include "depth/patch_match.h"
 #include "geometry/face_sights.h"
@@ -189,6 +190,36 @@ Work reading_map() {
           [] { io::read_dmap(map_file()); }};
 }
 
+// 200,000 points that four images see.
+Scene seen_points() {
+  Scene scene;
+  scene.images.resize(4);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    scene.images[i].path = "/images/" + std::to_string(i);
+    scene.images[i].id = i;
+    scene.images[i].camera = large_camera();
+  }
+  scene.points.assign(200000, {{0, 0, 1}, {{0, 0}, {1, 0}, {2, 0}, {3, 0}}});
+  return scene;
+}
+
+Work writing_pinhole_model() {
+  const auto scene = std::make_shared<Scene>(seen_points());
+  const auto points =
+      std::make_shared<densify::PinholePoints>(*scene, std::vector<std::size_t>{0, 1, 2, 3});
+  const cloud::PinholeView view{large_camera(), Eigen::Vector3d::Zero(), true};
+  const cv::Size size(view.camera.width, view.camera.height);
+  for (std::size_t i = 0; i < 4; ++i)
+    points->find(i, view, {cv::Mat3b(size, cv::Vec3b()), cv::Mat1b(size, cloud::kExact)});
+  return {densify::bytes_needed_for_pinhole_model(*scene), [scene, points] {
+            Scene exported;
+            exported.images = scene->images;
+            points->give_to(exported);
+            const auto folder = std::filesystem::path(testing::TempDir()) / "stage_memory_model";
+            EXPECT_EQ(densify::write_pinhole_model(folder, exported, "/images").points, 200000u);
+          }};
+}
+
 // A photographed mesh of 135,000 vertices, seen from above.
 struct Surface {
   test::PhotographedMesh scene;
@@ -241,6 +272,7 @@ const std::vector<Stage> kStages{
          s.scene.refine(mesh, options);
        });
      }},
+    {"WritingPinholeModel", 0.3, writing_pinhole_model},
     {"Sights", 0.3,
      [] {
        return on_mesh(geometry::bytes_of_sights,
