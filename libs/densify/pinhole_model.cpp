@@ -31,6 +31,7 @@ PinholePoints::PinholePoints(const Scene& scene, std::span<const std::size_t> im
   std::vector<std::size_t> counts(scene.images.size());
   for (const SparsePoint& point : scene.points)
     for (const SparseView& view : point.views) ++counts[view.image];
+  // Only the lists of `images` have room, and are filled.
   for (const std::size_t image : images) of_image_[image].reserve(counts[image]);
   for (std::uint32_t p = 0; p < scene.points.size(); ++p)
     for (const SparseView& view : scene.points[p].views) {
