@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "axial/map.h"
 #include "base/context.h"
 #include "base/error.h"
 #include "base/log.h"
@@ -28,27 +27,6 @@ namespace axial::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The axes of the map, and its coordinate reference system as WKT (empty: none).
-struct MapPlace {
-  map::WorldAxes axes;
-  std::string crs;
-};
-
-MapPlace place_of(const Settings& settings) {
-  MapPlace place;
-  if (settings.map.empty()) {
-    if (settings.epsg > 0) place.crs = map::crs_of_epsg(settings.epsg);
-    const Eigen::Vector3d up = settings.up.value_or(Eigen::Vector3d::UnitZ());
-    place.axes.axes = map::frame_with_up(up, {}).axes;
-    return place;
-  }
-  const map::StatedPlace stated = map::stated_place(settings.map);
-  if (!stated.axes) fail_in(settings.map, "does not state its axes: is it a map of MapSurface?");
-  place.axes = *stated.axes;
-  place.crs = stated.crs;
-  return place;
-}
 
 // Turns a mesh whose faces look down. Its lower side is not what a map shows.
 void turn_up(Mesh& mesh, const fs::path& file) {
@@ -131,9 +109,9 @@ int run(int argc, char** argv) {
   const OutputLock lock = lock_output(csv);
   std::vector<fs::path> inputs = io::files_of_mesh(settings.mesh);
   inputs.push_back(settings.areas);
-  inputs.push_back(settings.map);
+  inputs.push_back(settings.place.map);
   for (const fs::path& file : {csv, package}) require_not_an_input(file, inputs, "--output-file");
-  const MapPlace place = place_of(settings);
+  const map::MapPlace place = map::place_of(settings.place);
   const std::vector<map::Area> areas = map::read_areas(settings.areas, place.crs);
   Eigen::Vector3d origin;
   const Mesh mesh = read_mesh(settings.mesh, place.axes, origin, context);

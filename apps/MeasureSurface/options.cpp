@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string>
 
-#include "base/error.h"
 #include "base/output_name.h"
 #include "base/version.h"
-#include "map/up_direction.h"
 #include "settings.h"
 
 namespace axial::apps {
@@ -12,7 +10,6 @@ namespace {
 
 // The values of the command line that are converted.
 struct Raw {
-  std::string up;
   double length_sigma = 0;  // [%]
 };
 
@@ -22,18 +19,11 @@ void declare(OptionList& list, Raw& raw, Settings& settings) {
       .add("areas", &settings.areas,
            "polygons: GeoJSON, GeoPackage or shape file with one layer of polygons")
       .required("the file of polygons")
-      .add("map", &settings.map,
-           "a map of MapSurface on which the polygons were drawn, such as scene_map.dem.tif: gives "
-           "axes and coordinate reference system")
       .add("output-file,o", &settings.output,
            "begin of the names of the tables, which go on with .csv and .gpkg (<input>_areas)")
-      .output_file()
-      .add("up", &raw.up, "direction of the heights in the world, X,Y,Z (default: z)")
-      .add_with_default("epsg", &settings.epsg,
-                        "EPSG code of the coordinate reference system of the mesh, a projected one "
-                        "in metres (0: none)")
-      .range(0, 1 << 20)
-      .add_with_default("length-sigma", &raw.length_sigma,
+      .output_file();
+  map::declare_place(list, "polygons", settings.place);
+  list.add_with_default("length-sigma", &raw.length_sigma,
                         "standard deviation of lengths [%], as RefinePoses states it (0: not "
                         "known; the tables then have no standard deviations)")
       .range(0, 100)
@@ -46,11 +36,8 @@ void convert(const Raw& raw, Options& options) {
                               "--output-file");
   if (settings.output.extension() == ".csv" || settings.output.extension() == ".gpkg")
     settings.output.replace_extension();
-  settings.up = map::parse_up(raw.up, settings.epsg);
   settings.length_sigma = raw.length_sigma / 100;
-  if (settings.map.empty()) return;
-  for (const char* option : {"up", "epsg"})
-    if (given(options.parsed, option)) fail("--{} contradicts --map, which states it", option);
+  map::take_place(options.parsed, settings.place);
 }
 
 }  // namespace

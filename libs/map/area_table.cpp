@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "map/area_table.h"
 
-#include <cpl_conv.h>
 #include <ogr_api.h>
 #include <ogr_srs_api.h>
 
@@ -10,8 +9,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "private/gdal_calls.h"
-#include "private/ogr_handles.h"
+#include "private/vector_output.h"
 
 namespace axial::map {
 namespace {
@@ -84,20 +82,6 @@ Geometry geometry_of(const Area& area) {
   return parts;
 }
 
-// Sets an option of GDAL for this thread while the object exists.
-class GdalSetting {
- public:
-  GdalSetting(const char* key, const char* value) : key_(key) {
-    CPLSetThreadLocalConfigOption(key, value);
-  }
-  ~GdalSetting() { CPLSetThreadLocalConfigOption(key_, nullptr); }
-  GdalSetting(const GdalSetting&) = delete;
-  GdalSetting& operator=(const GdalSetting&) = delete;
-
- private:
-  const char* key_;
-};
-
 bool add_feature(OGRLayerH layer, const MeasuredArea& one, std::span<const Cell> cells) {
   const Feature feature(OGR_F_Create(OGR_L_GetLayerDefn(layer)));
   OGR_F_SetFieldString(feature.get(), 0, one.area.name.c_str());
@@ -111,10 +95,8 @@ bool add_feature(OGRLayerH layer, const MeasuredArea& one, std::span<const Cell>
 void write_package(const fs::path& file, std::span<const MeasuredArea> areas, double length_sigma,
                    const std::string& crs) {
   const GdalErrors errors;
-  const GdalSetting date("OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z");
-  DatasetPtr data(
-      GDALCreate(GDALGetDriverByName("GPKG"), file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-  errors.require_written(data != nullptr, file);
+  const FixedDate date;
+  DatasetPtr data = make_vector_file("GPKG", file, errors);
   const System system(crs.empty() ? nullptr : OSRNewSpatialReference(crs.c_str()));
   const OGRLayerH layer =
       GDALDatasetCreateLayer(data.get(), "areas", system.get(), wkbMultiPolygon, nullptr);

@@ -5,41 +5,19 @@
 #include <ogr_api.h>
 #include <ogr_srs_api.h>
 
-#include <algorithm>
-#include <cctype>
-#include <fstream>
 #include <string>
 
-#include "base/error.h"
 #include "map/geotiff.h"
 #include "map/stated_kind.h"
-#include "private/gdal_calls.h"
-#include "private/ogr_handles.h"
+#include "private/vector_output.h"
 
 namespace axial::map {
-namespace {
-
-// GDAL does not notice a failed write of GeoJSON, for example on a full disk.
-void require_complete(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  const auto size = static_cast<std::streamoff>(in.tellg());
-  std::string end(static_cast<std::size_t>(std::clamp<std::streamoff>(size, 0, 16)), '\0');
-  in.seekg(size - static_cast<std::streamoff>(end.size()));
-  in.read(end.data(), static_cast<std::streamsize>(end.size()));
-  std::erase_if(end, [](unsigned char c) { return std::isspace(c) != 0; });
-  if (!in || !end.ends_with("]}"))
-    fail_in(path, "cannot be written: only a part of it was written: is the disk full?");
-}
-
-}  // namespace
 
 void write_contours(const std::filesystem::path& heights, double interval,
                     const std::filesystem::path& path) {
   const GdalErrors errors;
   const DatasetPtr map = open_map(heights, errors);
-  DatasetPtr file(
-      GDALCreate(GDALGetDriverByName("GeoJSON"), path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-  errors.require_written(file != nullptr, path);
+  DatasetPtr file = make_vector_file("GeoJSON", path, errors);
   const GdalOptions layer_options{
       {"COORDINATE_PRECISION", "4"},
       {"WRITE_NAME", "NO"},
@@ -57,7 +35,7 @@ void write_contours(const std::filesystem::path& heights, double interval,
                                             nullptr, nullptr);
   file.reset();
   errors.require_written(done == CE_None, path);
-  require_complete(path);
+  require_complete_geojson(path);
 }
 
 }  // namespace axial::map

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "map/areas.h"
+#include "private/vector_file.h"
 
-#include <ogr_api.h>
 #include <ogr_srs_api.h>
 
 #include <string>
@@ -17,24 +16,47 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool has_polygons(OGRLayerH layer) {
-  const OGRwkbGeometryType type = OGR_GT_GetLinear(wkbFlatten(OGR_L_GetGeomType(layer)));
-  return type == wkbPolygon || type == wkbMultiPolygon || type == wkbUnknown;
+bool is_polygon(OGRwkbGeometryType type) {
+  return type == wkbPolygon || type == wkbMultiPolygon;
 }
 
-OGRLayerH layer_of(GDALDatasetH data, const fs::path& file) {
+bool is_point(OGRwkbGeometryType type) {
+  return type == wkbPoint || type == wkbMultiPoint;
+}
+
+// What the shapes are called in messages.
+struct Words {
+  const char *several, *none;
+};
+
+Words words_of(Shapes shapes) {
+  if (shapes == Shapes::polygons) return {"polygons", "no polygon"};
+  return {"polygons or points", "neither polygon nor point"};
+}
+
+bool is_one_of(OGRwkbGeometryType type, Shapes shapes) {
+  return is_polygon(type) || (shapes == Shapes::polygons_and_points && is_point(type));
+}
+
+bool may_have(OGRLayerH layer, Shapes shapes) {
+  const OGRwkbGeometryType type = OGR_GT_GetLinear(wkbFlatten(OGR_L_GetGeomType(layer)));
+  return type == wkbUnknown || is_one_of(type, shapes);
+}
+
+OGRLayerH layer_of(GDALDatasetH data, Shapes shapes, const fs::path& file) {
   std::vector<OGRLayerH> found;
   std::string names;
   for (int i = 0; i < GDALDatasetGetLayerCount(data); ++i) {
     const OGRLayerH layer = GDALDatasetGetLayer(data, i);
-    if (!has_polygons(layer)) continue;
+    if (!may_have(layer, shapes)) continue;
     found.push_back(layer);
     names += (names.empty() ? "" : ", ") + std::string(OGR_L_GetName(layer));
   }
-  if (found.empty()) fail_in(file, "has no layer with polygons");
+  const char* const several = words_of(shapes).several;
+  if (found.empty()) fail_in(file, "has no layer with {}", several);
   if (found.size() > 1)
-    fail_in(file, "has several layers with polygons ({}): write one of them to a file of its own",
-            names);
+    fail_in(file, "has several layers with {} ({}): write one of them to a file of its own",
+            several, names);
   return found.front();
 }
 
@@ -109,49 +131,73 @@ void check_places(const Area& area, const fs::path& file) {
 }
 
 std::string name_of(OGRFeatureH feature, std::size_t number) {
-  for (const char* field : {"name", "label", "id"}) {
-    const int index = OGR_F_GetFieldIndex(feature, field);
-    const std::string name = index < 0 ? "" : OGR_F_GetFieldAsString(feature, index);
-    if (!name.empty()) return name;
-  }
-  return std::to_string(number);
+  const std::string name = first_value(feature, {"name", "label", "id"});
+  return name.empty() ? std::to_string(number) : name;
 }
 
-Area area_of(OGRFeatureH feature, std::string name, OGRCoordinateTransformationH conversion,
-             const fs::path& file) {
-  Area area{std::move(name), {}};
+// The shape of a feature in the coordinates of the map, without curves.
+Geometry shape_of(OGRFeatureH feature, const std::string& name, Shapes shapes,
+                  OGRCoordinateTransformationH conversion, const fs::path& file) {
   const OGRGeometryH stored = OGR_F_GetGeometryRef(feature);
-  if (stored == nullptr) fail_in(file, "feature '{}' has no geometry", area.name);
-  const OGRwkbGeometryType type = OGR_GT_GetLinear(wkbFlatten(OGR_G_GetGeometryType(stored)));
-  if (type != wkbPolygon && type != wkbMultiPolygon)
-    fail_in(file, "feature '{}' is no polygon, but {}", area.name, OGRGeometryTypeToName(type));
-  const Geometry geometry(OGR_G_GetLinearGeometry(stored, 0, nullptr));
-  if (conversion != nullptr && OGR_G_Transform(geometry.get(), conversion) != OGRERR_NONE)
+  if (stored == nullptr) fail_in(file, "feature '{}' has no geometry", name);
+  const OGRwkbGeometryType type = plain_type(stored);
+  if (!is_one_of(type, shapes))
+    fail_in(file, "feature '{}' is {}, but {}", name, words_of(shapes).none,
+            OGRGeometryTypeToName(type));
+  Geometry shape(OGR_G_GetLinearGeometry(stored, 0, nullptr));
+  if (conversion != nullptr && OGR_G_Transform(shape.get(), conversion) != OGRERR_NONE)
     fail_in(file,
-            "polygon '{}' cannot be converted to the coordinates of the map: are its coordinates "
+            "{} '{}' cannot be converted to the coordinates of the map: are its coordinates "
             "in another system than the file states? A GeoJSON file without \"crs\" has degrees of "
             "WGS 84",
-            area.name);
-  add_parts(geometry.get(), area);
+            is_point(type) ? "point" : "polygon", name);
+  return shape;
+}
+
+}  // namespace
+
+OGRwkbGeometryType plain_type(OGRGeometryH shape) {
+  return OGR_GT_GetLinear(wkbFlatten(OGR_G_GetGeometryType(shape)));
+}
+
+std::string first_value(OGRFeatureH feature, std::initializer_list<const char*> fields) {
+  for (const char* field : fields) {
+    const int index = OGR_F_GetFieldIndex(feature, field);
+    std::string value = index < 0 ? "" : OGR_F_GetFieldAsString(feature, index);
+    if (!value.empty()) return value;
+  }
+  return {};
+}
+
+Area area_of(const FoundFeature& found, const fs::path& file) {
+  Area area{found.name, {}};
+  add_parts(found.shape, area);
   check_rings(area, file);
   check_places(area, file);
   return area;
 }
 
-}  // namespace
-
-std::vector<Area> read_areas(const fs::path& file, const std::string& crs) {
+void for_each_feature(const fs::path& file, const std::string& crs, Shapes shapes,
+                      const std::function<void(const FoundFeature& found)>& use) {
   const GdalErrors errors;
   const DatasetPtr data = open_vectors(file, errors);
-  const OGRLayerH layer = layer_of(data.get(), file);
+  const OGRLayerH layer = layer_of(data.get(), shapes, file);
   const Conversion conversion = conversion_to(crs, layer, file);
-  std::vector<Area> areas;
+  std::size_t count = 0;
   OGR_L_ResetReading(layer);
-  while (const Feature feature{OGR_L_GetNextFeature(layer)})
-    areas.push_back(
-        area_of(feature.get(), name_of(feature.get(), areas.size() + 1), conversion.get(), file));
+  while (const Feature feature{OGR_L_GetNextFeature(layer)}) {
+    const std::string name = name_of(feature.get(), ++count);
+    const Geometry shape = shape_of(feature.get(), name, shapes, conversion.get(), file);
+    use({feature.get(), shape.get(), name});
+  }
   errors.require_vectors_read(true, file);
-  if (areas.empty()) fail_in(file, "has no polygon");
+  if (count == 0) fail_in(file, "has {}", words_of(shapes).none);
+}
+
+std::vector<Area> read_areas(const fs::path& file, const std::string& crs) {
+  std::vector<Area> areas;
+  for_each_feature(file, crs, Shapes::polygons,
+                   [&](const FoundFeature& found) { areas.push_back(area_of(found, file)); });
   return areas;
 }
 

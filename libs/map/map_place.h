@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the coordinates of a user's map lie: options that several programs have.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "base/option_list.h"
+#include "base/program.h"
+#include "map/world_axes.h"
+
+namespace axial::map {
+
+// The values of the options.
+struct PlaceOptions {
+  std::filesystem::path map;          // a map of MapSurface; empty: not given
+  std::string up_text;                // of `up`, as it was given
+  std::optional<Eigen::Vector3d> up;  // in the world, without a map; empty: z
+  int epsg = 0;                       // without a map; 0: no coordinate reference system
+};
+
+// Adds the options `--map`, `--up` and `--epsg` to `list`. `drawn`: the things on the map, for the
+// help ("polygons"). `options` must exist until parse_options() has returned. The program then
+// calls take_place().
+void declare_place(OptionList& list, const std::string& drawn, PlaceOptions& options);
+
+// Converts the direction. Error if an option contradicts the map, and for a direction that
+// parse_up() refuses.
+void take_place(const ParsedOptions& parsed, PlaceOptions& options);
+
+// The axes of the map, and its coordinate reference system as WKT (empty: none).
+struct MapPlace {
+  WorldAxes axes;
+  std::string crs;
+};
+
+// Error that names the map if it cannot be read or does not state its axes, and Error of
+// crs_of_epsg().
+MapPlace place_of(const PlaceOptions& options);
+
+}  // namespace axial::map
