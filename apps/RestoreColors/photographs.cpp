@@ -9,6 +9,7 @@
 #include "color/chart.h"
 #include "io/images/image.h"
 #include "survey/colors.h"
+#include "survey/photograph_names.h"
 #include "survey/photographs.h"
 #include "unfinished.h"
 
@@ -16,19 +17,6 @@ namespace axial::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The deepest folder that contains all photographs.
-fs::path common_folder(const survey::Survey& survey) {
-  fs::path common = survey.views.front().file.parent_path();
-  for (const survey::View& view : survey.views) {
-    const fs::path folder = view.file.parent_path();
-    const auto ends = std::ranges::mismatch(common, folder);
-    fs::path shared;
-    for (auto part = common.begin(); part != ends.in1; ++part) shared /= *part;
-    common = shared;
-  }
-  return common;
-}
 
 color::Rendering rendering_of(const Settings& settings, const survey::Survey& survey,
                               std::size_t view, const Findings& findings) {
@@ -38,14 +26,6 @@ color::Rendering rendering_of(const Settings& settings, const survey::Survey& su
 }
 
 }  // namespace
-
-std::vector<fs::path> photograph_names(const survey::Survey& survey) {
-  const fs::path folder = common_folder(survey);
-  std::vector<fs::path> names;
-  for (const survey::View& view : survey.views)
-    names.push_back(view.file.lexically_relative(folder));
-  return names;
-}
 
 geometry::PosedCamera posed(const survey::View& view) {
   return {view.camera, view.pose};
@@ -66,7 +46,7 @@ PhotographLight read_light(const survey::Survey& survey, std::size_t view,
 
 OutputNames output_names(const Settings& settings, const survey::Survey& survey) {
   OutputNames names;
-  for (const fs::path& photograph : photograph_names(survey)) {
+  for (const fs::path& photograph : survey::photograph_names(survey)) {
     fs::path name = survey::restored_name(photograph);
     if (settings.masks) names.masks.push_back(fs::path("masks") / (name.string() + ".png"));
     names.photographs.push_back(std::move(name));

@@ -23,9 +23,6 @@ struct PhotographLight {
 PhotographLight read_light(const survey::Survey& survey, std::size_t view,
                            const color::Transfer& transfer);
 
-// The paths of the photographs of all views, below the deepest folder that contains all of them.
-std::vector<std::filesystem::path> photograph_names(const survey::Survey& survey);
-
 geometry::PosedCamera posed(const survey::View& view);
 
 // The exposure by which the light of a view's photograph is divided.

@@ -18,7 +18,7 @@ enum class White { grey_seabed, grey_part, charts };
 
 // A colour chart in a photograph.
 struct SeenChart {
-  std::string photograph;     // of photograph_names()
+  std::string photograph;     // survey::photograph_names()
   color::PatchLights lights;  // restored, without gain
   Eigen::Array3f gain;        // by this chart alone
   double error = 0;           // chart_error() with Findings::gain

@@ -13,6 +13,7 @@
 #include "base/order_statistics.h"
 #include "color/chart.h"
 #include "photographs.h"
+#include "survey/photograph_names.h"
 
 namespace axial::apps {
 namespace {
@@ -20,15 +21,11 @@ namespace {
 // The view of the photograph whose path ends with `name`. Error that begins with `option` if there
 // is not exactly one.
 std::size_t view_named(const std::string& name, const char* option, const survey::Survey& survey) {
-  const auto has_name = [&](const survey::View& view) {
-    const std::string path = view.file.generic_string();
-    return path == name || path.ends_with("/" + name);
-  };
-  const auto found = std::ranges::find_if(survey.views, has_name);
-  if (found == survey.views.end()) fail("{} {}: no photograph has this name", option, name);
-  if (std::ranges::count_if(survey.views, has_name) > 1)
+  const std::vector<std::size_t> found = survey::views_named(name, survey);
+  if (found.empty()) fail("{} {}: no photograph has this name", option, name);
+  if (found.size() > 1)
     fail("{} {}: several photographs have this name; give a folder, too", option, name);
-  return static_cast<std::size_t>(found - survey.views.begin());
+  return found.front();
 }
 
 // A photograph whose light is restored without white.
@@ -128,7 +125,7 @@ void use_charts(const Settings& settings, const survey::Survey& survey,
                 const color::SeenSurface& surface, std::span<const std::size_t> views,
                 Findings& findings, const Context& context) {
   ProgressCounter progress(context.stage("Looking for colour charts"), views.size());
-  const std::vector<std::filesystem::path> names = photograph_names(survey);
+  const std::vector<std::filesystem::path> names = survey::photograph_names(survey);
   std::string fault;  // of the last chart that cannot be used
   for (const std::size_t view : views) {
     const std::string name = names[view].generic_string();
