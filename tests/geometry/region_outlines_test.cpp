@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/region_outlines.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace axial::geometry {
+namespace {
+
+const Eigen::Vector2d kCentre(130.2, -40.7);
+constexpr double kStep = 0.5;
+
+double area_of(const Ring& ring) {
+  double twice = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Eigen::Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return twice / 2;
+}
+
+SampleGrid grid_around(double half) {
+  const int count = static_cast<int>(2 * half / kStep) + 1;
+  return {kCentre - Eigen::Vector2d(half, half), kStep, count, count};
+}
+
+double radius_at(const Eigen::Vector2d& place) {
+  return (place - kCentre).norm();
+}
+
+// Corners lie on the circle up to the bisection. Between them, lines leave out a fiftieth of a
+// step, and a line across a square between samples the sagitta of its diagonal.
+void expect_circle(const Ring& ring, double radius) {
+  const double sagitta = 2 * kStep * kStep / (8 * radius);
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    EXPECT_NEAR(radius_at(ring[i]), radius, kStep / 100);
+    EXPECT_NEAR(radius_at((ring[i] + ring[(i + 1) % ring.size()]) / 2), radius,
+                0.03 * kStep + sagitta);
+  }
+}
+
+TEST(RegionOutlines, OfARingWithAnIslandInItsHole) {
+  const auto parts = region_outlines(grid_around(12), [](const Eigen::Vector2d& place) {
+    const double r = radius_at(place);
+    return (r > 6 && r < 10.3) || r < 2.1;
+  });
+  ASSERT_EQ(parts.size(), 2U);
+  const auto& ring = parts[parts[0].size() == 2 ? 0 : 1];
+  const auto& island = parts[parts[0].size() == 2 ? 1 : 0];
+  ASSERT_EQ(ring.size(), 2U);
+  ASSERT_EQ(island.size(), 1U);
+  expect_circle(ring[0], 10.3);
+  expect_circle(ring[1], 6);
+  expect_circle(island[0], 2.1);
+  EXPECT_NEAR(area_of(ring[0]), std::numbers::pi * 10.3 * 10.3, 3);
+  EXPECT_NEAR(area_of(ring[1]), -std::numbers::pi * 36, 2);
+}
+
+TEST(RegionOutlines, AreFoundBeyondAGridThatIsTooSmall) {
+  const auto parts = region_outlines(
+      grid_around(1), [](const Eigen::Vector2d& place) { return radius_at(place) < 9; });
+  ASSERT_EQ(parts.size(), 1U);
+  expect_circle(parts[0][0], 9);
+}
+
+TEST(RegionOutlines, StopAtTheMostSamples) {
+  const auto parts = region_outlines(
+      grid_around(1), [](const Eigen::Vector2d&) { return true; }, 400);
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_LT(area_of(parts[0][0]), 400 * kStep * kStep);
+}
+
+TEST(RegionOutlines, OfSquaresThatTouchAtACornerAreApart) {
+  const auto parts = region_outlines(grid_around(5), [](const Eigen::Vector2d& place) {
+    const Eigen::Vector2d at = place - kCentre;
+    return at.cwiseAbs().maxCoeff() < 4 && (at.x() > 0.1) == (at.y() > 0.1);
+  });
+  ASSERT_EQ(parts.size(), 2U);
+  for (const auto& part : parts) {
+    ASSERT_EQ(part.size(), 1U);
+    EXPECT_GT(area_of(part[0]), 3.5 * 3.5);
+  }
+}
+
+TEST(RegionOutlines, OfNothing) {
+  EXPECT_TRUE(
+      region_outlines(grid_around(3), [](const Eigen::Vector2d&) { return false; }).empty());
+  EXPECT_TRUE(region_outlines({}, [](const Eigen::Vector2d&) { return true; }).empty());
+}
+
+}  // namespace
+}  // namespace axial::geometry
