@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cstdint>
+#include <map>
+#include <opencv2/core.hpp>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/naming.h"
+#include "base/parallel.h"
+#include "base/same_file.h"
+#include "directions.h"
+#include "io/images/image.h"
+#include "labels/coco.h"
+#include "labels/fill.h"
+#include "labels/map_to_photographs.h"
+#include "map/label_file.h"
+#include "survey/photograph_names.h"
+
+namespace axial::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The labels of all views, in their order.
+std::vector<std::vector<labels::SeenLabel>> seen_labels(const Ground& ground,
+                                                        const labels::MapLabels& labels,
+                                                        const Context& context) {
+  std::vector<std::vector<labels::SeenLabel>> seen(ground.survey.views.size());
+  ProgressCounter progress(context.stage("Looking at photographs"), seen.size());
+  parallel_for(seen.size(), [&](std::size_t view) {
+    const survey::View& of = ground.survey.views[view];
+    seen[view] = labels.seen_in(labels::PosedRays({of.camera, of.pose}));
+    progress.add();
+  });
+  return seen;
+}
+
+void report(const Ground& ground, const std::vector<map::Label>& labels,
+            const labels::MapLabels& placed,
+            const std::vector<std::vector<labels::SeenLabel>>& seen) {
+  std::vector<bool> is_seen(labels.size(), false);
+  for (const auto& view : seen)
+    for (const labels::SeenLabel& label : view) is_seen[label.index] = true;
+  std::vector<std::string> beside, unseen;
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    if (!is_seen[i]) (placed.is_on_surface(i) ? unseen : beside).push_back(labels[i].name);
+  if (beside.size() == labels.size())
+    fail_in(ground.settings.mesh,
+            "has no surface at any label: are the coordinates those of the map?");
+  if (beside.size() + unseen.size() == labels.size())
+    fail_in(ground.settings.from_map, "no photograph sees a label");
+  warn_of(beside, "the mesh has no surface there");
+  warn_of(unseen, "no photograph sees it");
+}
+
+// The photographs that see a label.
+std::vector<labels::LabelledPhotograph> labelled(const Ground& ground,
+                                                 std::vector<std::vector<labels::SeenLabel>> seen) {
+  const std::vector<fs::path> names = survey::photograph_names(ground.survey);
+  std::vector<labels::LabelledPhotograph> photographs;
+  for (std::size_t view = 0; view < seen.size(); ++view) {
+    if (seen[view].empty()) continue;
+    const CameraModel& camera = ground.survey.views[view].camera;
+    labels::LabelledPhotograph photograph{
+        names[view].generic_string(), camera.width, camera.height, {}};
+    for (labels::SeenLabel& label : seen[view]) photograph.labels.push_back(std::move(label.label));
+    photographs.push_back(std::move(photograph));
+  }
+  return photographs;
+}
+
+fs::path mask_name(const labels::LabelledPhotograph& photograph) {
+  return photograph.name + ".png";
+}
+
+cv::Mat mask_of(const labels::LabelledPhotograph& photograph,
+                const std::map<std::string, int>& categories) {
+  cv::Mat1w mask(photograph.height, photograph.width, std::uint16_t{0});
+  for (const map::Label& label : photograph.labels)
+    labels::fill(label.parts, static_cast<std::uint16_t>(categories.at(label.category)), mask);
+  if (categories.size() > 255) return mask;
+  cv::Mat1b bytes;
+  mask.convertTo(bytes, CV_8U);
+  return bytes;
+}
+
+void write_masks(const Ground& ground, std::span<const labels::LabelledPhotograph> photographs,
+                 const Context& context) {
+  const fs::path& folder = ground.settings.masks;
+  std::vector<fs::path> files;
+  for (const auto& photograph : photographs) files.push_back(folder / mask_name(photograph));
+  require_no_inputs(files, ground.survey.inputs, "--masks");
+  const std::map<std::string, int> categories = labels::category_ids(photographs);
+  ProgressCounter progress(context.stage("Writing masks"), photographs.size());
+  write_folder(folder, [&](const fs::path& staging) {
+    for (const auto& photograph : photographs) {
+      const fs::path file = staging / mask_name(photograph);
+      make_folder(file.parent_path());
+      io::write_png(file, mask_of(photograph, categories));
+      progress.add();
+    }
+  });
+}
+
+}  // namespace
+
+void to_photographs(const Ground& ground, const Context& context) {
+  const Settings& settings = ground.settings;
+  const std::vector<map::Label> labels =
+      map::read_labels(settings.from_map, ground.crs, settings.class_field);
+  const labels::MapLabels placed =
+      naming(settings.from_map, [&] { return labels::MapLabels(ground.surface, labels); });
+  auto seen = seen_labels(ground, placed, context);
+  report(ground, labels, placed, seen);
+  const std::vector<labels::LabelledPhotograph> photographs = labelled(ground, std::move(seen));
+  if (!settings.masks.empty()) write_masks(ground, photographs, context);
+  const fs::path file = outputs_of(settings).front();
+  write_atomically(file, labels::coco_text(photographs));
+  log_info("{} labels in {} of {} photographs: {}", labels.size(), photographs.size(),
+           ground.survey.views.size(), file.string());
+}
+
+}  // namespace axial::apps

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "labels/fill.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace axial::labels {
+
+void fill(const std::vector<std::vector<geometry::Ring>>& parts, std::uint16_t value,
+          cv::Mat1w& mask) {
+  std::vector<double> crossings;
+  for (int y = 0; y < mask.rows; ++y) {
+    crossings.clear();
+    for (const auto& part : parts)
+      for (const geometry::Ring& ring : part)
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+          const Eigen::Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
+          if ((a.y() <= y) == (b.y() <= y)) continue;
+          crossings.push_back(a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
+        }
+    std::ranges::sort(crossings);
+    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
+      const int begin = std::max(0, static_cast<int>(std::ceil(crossings[i])));
+      const int end = std::min(mask.cols - 1, static_cast<int>(std::floor(crossings[i + 1])));
+      for (int x = begin; x <= end; ++x) mask(y, x) = value;
+    }
+  }
+}
+
+}  // namespace axial::labels

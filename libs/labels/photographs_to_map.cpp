@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "labels/photographs_to_map.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <utility>
+
+#include "base/order_statistics.h"
+#include "base/parallel.h"
+#include "geometry/region_outlines.h"
+
+namespace axial::labels {
+namespace {
+
+using Parts = std::vector<std::vector<geometry::Ring>>;
+
+// The polygon of a label in a photograph.
+class DrawnPolygon {
+ public:
+  explicit DrawnPolygon(const Parts& parts) {
+    for (const auto& part : parts) {
+      lines_.emplace_back();
+      for (const geometry::Ring& ring : part) {
+        std::vector<cv::Point2f>& line = lines_.back().emplace_back();
+        for (const Eigen::Vector2d& corner : ring) {
+          line.emplace_back(static_cast<float>(corner.x()), static_cast<float>(corner.y()));
+          box_.extend(corner);
+        }
+      }
+    }
+  }
+
+  const Eigen::AlignedBox2d& box() const { return box_; }
+
+  bool contains(const Eigen::Vector2d& pixel) const {
+    if (!box_.contains(pixel)) return false;
+    const cv::Point2f at(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
+    return std::ranges::any_of(lines_, [&](const auto& part) {
+      return std::ranges::count_if(
+                 part,
+                 [&](const auto& line) { return cv::pointPolygonTest(line, at, false) >= 0; }) %
+                 2 ==
+             1;
+    });
+  }
+
+ private:
+  std::vector<std::vector<std::vector<cv::Point2f>>> lines_;  // of the rings of each part
+  Eigen::AlignedBox2d box_;
+};
+
+// Pixels inside the polygon, about a million at most, and its corners.
+std::vector<Eigen::Vector2d> pixels_in(const DrawnPolygon& polygon, const Parts& parts,
+                                       const CameraModel& camera) {
+  constexpr double kMost = 1e6;
+  const Eigen::Vector2d low = polygon.box().min().cwiseMax(0),
+                        high = polygon.box().max().cwiseMin(
+                            Eigen::Vector2d(camera.width - 1, camera.height - 1));
+  std::vector<Eigen::Vector2d> pixels;
+  const double area = std::max(0.0, high.x() - low.x()) * std::max(0.0, high.y() - low.y());
+  const double step = std::max(1.0, std::ceil(std::sqrt(area / kMost)));
+  for (double y = std::ceil(low.y()); y <= high.y(); y += step)
+    for (double x = std::ceil(low.x()); x <= high.x(); x += step)
+      if (polygon.contains({x, y})) pixels.emplace_back(x, y);
+  for (const auto& part : parts)
+    for (const geometry::Ring& ring : part)
+      for (const Eigen::Vector2d& corner : ring)
+        if (geometry::is_in_image(camera, corner, -0.5)) pixels.push_back(corner);
+  return pixels;
+}
+
+// The part of the map that pixels see.
+struct SeenGround {
+  Eigen::AlignedBox2d box;
+  double width = 0;    // of a pixel on the map: the median
+  double missing = 0;  // share of the pixels that see no surface
+};
+
+SeenGround ground_of(const LabelledSurface& surface, const PosedRays& rays,
+                     const std::vector<Eigen::Vector2d>& pixels) {
+  const auto place_at = [&](const Eigen::Vector2d& pixel) {
+    const auto sight = rays.sight(pixel);
+    return sight ? surface.seen_by(*sight) : std::nullopt;
+  };
+  std::vector<std::optional<Eigen::Vector3d>> places(pixels.size()), beside(pixels.size());
+  parallel_for(
+      pixels.size(),
+      [&](std::size_t i) {
+        places[i] = place_at(pixels[i]);
+        beside[i] = place_at(pixels[i] + Eigen::Vector2d::Constant(std::sqrt(0.5)));
+      },
+      kPointGrain);
+  SeenGround ground;
+  std::vector<double> widths;
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (!places[i]) continue;
+    ++seen;
+    ground.box.extend(places[i]->head<2>());
+    if (beside[i]) widths.push_back((*beside[i] - *places[i]).head<2>().norm());
+  }
+  if (!widths.empty()) ground.width = upper_median(std::move(widths));
+  if (!pixels.empty())
+    ground.missing = 1 - static_cast<double>(seen) / static_cast<double>(pixels.size());
+  return ground;
+}
+
+// Samples over the ground, and two more on each side.
+geometry::SampleGrid grid_over(const SeenGround& ground) {
+  constexpr double kMost = 2048;
+  constexpr int kAround = 2;
+  const Eigen::Vector2d size = ground.box.sizes();
+  const double step = std::max({ground.width, size.maxCoeff() / kMost, 1e-6});
+  const auto count = [&](double length) {
+    return static_cast<int>(std::ceil(length / step)) + 1 + 2 * kAround;
+  };
+  return {ground.box.min() - Eigen::Vector2d::Constant(kAround * step), step, count(size.x()),
+          count(size.y())};
+}
+
+double area_of(const std::vector<geometry::Ring>& part) {
+  double twice = 0;
+  for (const geometry::Ring& ring : part)
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Eigen::Vector2d a = ring[i] - ring[0], b = ring[(i + 1) % ring.size()] - ring[0];
+      twice += a.x() * b.y() - a.y() * b.x();
+    }
+  return twice / 2;
+}
+
+void leave_out_small(double least_part, Parts& parts) {
+  double sum = 0;
+  for (const auto& part : parts) sum += area_of(part);
+  std::erase_if(parts, [&](const auto& part) { return !(area_of(part) >= least_part * sum); });
+}
+
+}  // namespace
+
+CarriedLabel carried_to_map(const LabelledSurface& surface, const PosedRays& rays,
+                            const map::Label& drawn, double least_part) {
+  const Eigen::Vector3d& origin = surface.origin();
+  CarriedLabel carried{{drawn.name, drawn.category, {}, {}}, {}, 0};
+  const DrawnPolygon polygon(drawn.parts);
+  std::vector<Eigen::Vector2d> pixels = pixels_in(polygon, drawn.parts, rays.posed().camera);
+  pixels.insert(pixels.end(), drawn.points.begin(), drawn.points.end());
+  const SeenGround ground = ground_of(surface, rays, pixels);
+  carried.missing = ground.missing;
+  if (!drawn.parts.empty() && !ground.box.isEmpty()) {
+    carried.label.parts =
+        geometry::region_outlines(grid_over(ground), [&](const Eigen::Vector2d& at) {
+          const auto place = surface.highest(at);
+          const auto pixel = place ? surface.pixel_of(rays, *place) : std::nullopt;
+          return pixel && polygon.contains(*pixel);
+        });
+    leave_out_small(least_part, carried.label.parts);
+  }
+  for (auto& part : carried.label.parts)
+    for (geometry::Ring& ring : part)
+      for (Eigen::Vector2d& corner : ring) {
+        const auto place = surface.highest(corner);
+        carried.heights.push_back(place ? place->z() + origin.z()
+                                        : std::numeric_limits<double>::quiet_NaN());
+        corner += origin.head<2>();
+      }
+  for (const Eigen::Vector2d& point : drawn.points) {
+    const auto sight = rays.is_in_photograph(point) ? rays.sight(point) : std::nullopt;
+    const auto place = sight ? surface.seen_by(*sight) : std::nullopt;
+    if (!place) continue;
+    carried.label.points.push_back((*place + origin).head<2>());
+    carried.heights.push_back(place->z() + origin.z());
+  }
+  return carried;
+}
+
+}  // namespace axial::labels
