@@ -14,7 +14,7 @@ cmake --preset release -DAXIAL_TESTS=ON --log-level=WARNING
 cmake --build --preset release --target InterfaceCOLMAP DensifyPointCloud SimulateUnderwater \
   EvaluateReconstruction AlignModel RefinePoses ReconstructMesh RefineMesh TextureMesh \
   MapSurface CompareSurveys TransformScene ViewScene CalibrateHousing ReproducePaper ExtractFrames \
-  FindTargets RestoreColors MeasureSurface color_check color_baselines \
+  FindTargets RestoreColors MeasureSurface ProjectLabels color_check color_baselines \
   map_check change_check held_out_check seam_check unseen_check \
   drawn_boards dive_photograph matching_benchmark
 exec python3 tests/acceptance/acceptance.py "$@"

@@ -2,8 +2,8 @@
 // The names of output files: one rule for all programs. A known extension of a name is replaced by
 // the extension of the file that is written. Every other dot belongs to the name: the outputs
 // "reef.2024" and "reef.2025" are different files. Exception: the output of MapSurface,
-// CompareSurveys and MeasureSurface is the begin of the names, and none of these extensions is
-// replaced.
+// CompareSurveys, MeasureSurface and ProjectLabels is the begin of the names, and none of these
+// extensions is replaced.
 #pragma once
 
 #include <filesystem>

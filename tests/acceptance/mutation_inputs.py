@@ -70,6 +70,9 @@ PROGRAMS = {program.name: program for program in (
             ("mesh.ply", "textured.ply", *DENSE), ("textured0.png", *PHOTOGRAPHS)),
     Program("MeasureSurface", ("-i", "mesh.ply", "--areas", "areas.geojson", "--map", "map.dem.tif", "-o", "out"),
             ("mesh.ply", "areas.geojson", "map.dem.tif"), ()),
+    Program("ProjectLabels", ("-i", "scene_dense.mvs", "-m", "mesh.ply", "--from-photographs", "drawn.json", "--map",
+                              "map.dem.tif", "-o", "out"),
+            (*DENSE, "mesh.ply", "drawn.json", "map.dem.tif"), PHOTOGRAPHS),
     Program("ViewScene", ("-i", "scene_dense.mvs", "-p", "scene_dense.ply", "-m", "textured.ply",
                           "--report", "out", "--max-points", "2000", "--map", "map", "--sfm-model",
                           "sim/sparse", "--photograph-size", "40", "--depth-map-size", "40"),
@@ -178,6 +181,12 @@ def make_all(binaries, folder):
     (folder / "areas.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
         {"type": "Feature", "properties": {"name": "plot"}, "geometry": {"type": "Polygon", "coordinates": [
             [[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, -0.1]]]}}]}))
+    (folder / "drawn.json").write_text(json.dumps({
+        "images": [{"id": 1, "file_name": "0001.jpg", "width": 160, "height": 120}],
+        "categories": [{"id": 1, "name": "coral"}],
+        "annotations": [{"id": 1, "image_id": 1, "category_id": 1, "iscrowd": 0,
+                         "segmentation": [[60, 40, 100, 40, 100, 80.5, 60, 80]], "bbox": [60, 40, 40, 40.5]},
+                        {"id": 2, "image_id": 1, "category_id": 1, "keypoints": [70.25, 60, 2]}]}))
     (folder / "bars.txt").write_text("target 1,target 2,0.5,0.001\n")
     (folder / "ReproducePaper.cfg").write_text("# A comment\nquick = 1\n")
     (folder / "paper").mkdir()

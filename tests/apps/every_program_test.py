@@ -3,12 +3,13 @@
 bytes for any number of threads and without standard streams, and one run for each output."""
 
 import fcntl
+import json
 import math
 import os
 import shutil
 
 from programs import BIN, contents, files_below, main, png, read, run, without_streams, write
-from tiny_scene import CENTRES, DENSIFY, picture
+from tiny_scene import CENTRES, DENSIFY, HEIGHT, WIDTH, picture
 from worlds import Wall, cloud, matrix_text, ply, wall
 
 # The wall is small and simple.
@@ -24,6 +25,13 @@ class Programs(Wall):
         self.cloud = self.path("work", "scene.ply")
         write(self.cloud, cloud([((0.01 * i, 0.02 * i, 1), [0, 1]) for i in range(9)]))
         write(self.path("work", "t.txt"), matrix_text())
+        write(self.path("work", "map.geojson"), json.dumps({"type": "FeatureCollection", "features": [
+            {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": [
+                [[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, -0.1]]]}}]}))
+        write(self.path("work", "drawn.json"), json.dumps({
+            "images": [{"id": 1, "file_name": "0001.png", "width": WIDTH, "height": HEIGHT}],
+            "categories": [{"id": 1, "name": "coral"}], "annotations": [
+                {"id": 1, "image_id": 1, "category_id": 1, "segmentation": [[20, 20, 60, 20, 60, 50]]}]}))
 
     def program(self, program, *arguments, mesh="mesh.ply"):
         return (program, "-i", "scene.mvs", "-w", self.work, *(("--mesh-file", mesh) if mesh else ()),
@@ -44,6 +52,8 @@ class Programs(Wall):
                 self.program("TextureMesh", "-o", "out", "--tiles", "3"),
                 self.program("MapSurface", "-o", "out", "--gsd", "0.02", "--hillshade", "--contours", "0.1"),
                 (*compare, "--gsd", "0.02"),
+                self.program("ProjectLabels", "--from-map", "map.geojson", "-o", "out"),
+                self.program("ProjectLabels", "--from-photographs", "drawn.json", "-o", "out"),
                 self.program("TransformScene", "-t", "t.txt", "-o", "out"),
                 self.program("ViewScene", "--report", "out"),
                 ("EvaluateReconstruction", "-i", self.mesh, "-m", self.mesh, "--samples", "100", "--json",

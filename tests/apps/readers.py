@@ -274,8 +274,8 @@ def png_samples(data):
     complete: a filter and the samples of each row."""
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
     width, height, bits, kind = struct.unpack_from(">IIBB", data, 16)
-    channels, at, packed = {0: 1, 2: 3, 6: 4}[kind], 8, b""
     assert bits == 8
+    channels, at, packed = {0: 1, 2: 3, 6: 4}[kind], 8, b""
     while at < len(data):
         length, name = struct.unpack_from(">I4s", data, at)
         packed += data[at + 8:at + 8 + length] if name == b"IDAT" else b""

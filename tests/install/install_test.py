@@ -15,9 +15,9 @@ import unittest
 
 BUILD, SOURCE, VERSION = sys.argv[1:4]
 PROGRAMS = ["AlignModel", "CalibrateHousing", "CompareSurveys", "DensifyPointCloud", "EvaluateReconstruction",
-            "ExtractFrames", "FindTargets", "InterfaceCOLMAP", "MapSurface", "MeasureSurface", "ReconstructMesh",
-            "RefineMesh", "RefinePoses", "ReproducePaper", "RestoreColors", "SimulateUnderwater", "TextureMesh",
-            "TransformScene", "ViewScene"]
+            "ExtractFrames", "FindTargets", "InterfaceCOLMAP", "MapSurface", "MeasureSurface", "ProjectLabels",
+            "ReconstructMesh", "RefineMesh", "RefinePoses", "ReproducePaper", "RestoreColors", "SimulateUnderwater",
+            "TextureMesh", "TransformScene", "ViewScene"]
 
 
 def output_of(*command):
