@@ -16,7 +16,9 @@ namespace {
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
-Triangle corners_of(const Mesh& mesh, std::uint32_t face) {
+constexpr std::size_t kBlock = 256;
+
+Triangle corners_of(const Mesh& mesh, std::size_t face) {
   Triangle corners;
   for (std::size_t k = 0; k < 3; ++k)
     corners[k] = mesh.vertices[mesh.faces[face][k]].cast<double>();
@@ -87,7 +89,19 @@ class MapLabels::Pixels {
 
 MapLabels::MapLabels(const LabelledSurface& surface, std::span<const map::Label> labels)
     : surface_(surface), labels_(labels), placed_(labels.size()) {
+  make_blocks();
   parallel_for(labels.size(), [&](std::size_t i) { placed_[i] = placed(labels[i]); });
+}
+
+// Faces that follow each other in a mesh mostly lie near each other.
+void MapLabels::make_blocks() {
+  const std::size_t faces = surface_.mesh().faces.size();
+  blocks_.resize((faces + kBlock - 1) / kBlock);
+  parallel_for(blocks_.size(), [&](std::size_t block) {
+    for (std::size_t face = block * kBlock; face < std::min(faces, (block + 1) * kBlock); ++face)
+      for (const Eigen::Vector3d& corner : corners_of(surface_.mesh(), face))
+        blocks_[block].extend(surface_.to_map(corner).head<2>());
+  });
 }
 
 MapLabels::Placed MapLabels::placed(const map::Label& label) const {
@@ -96,29 +110,35 @@ MapLabels::Placed MapLabels::placed(const map::Label& label) const {
   for (const Eigen::Vector2d& point : label.points)
     if (const auto place = surface_.highest(point - origin)) placed.points.push_back(*place);
   if (label.parts.empty()) return placed;
-  placed.polygon.emplace_back(rings_from(label, origin));
-  find_faces(label, placed);
+  const std::vector<geometry::Ring> rings = rings_from(label, origin);
+  placed.polygon.emplace_back(rings);
+  Eigen::AlignedBox2d around;
+  for (const geometry::Ring& ring : rings)
+    for (const Eigen::Vector2d& corner : ring) around.extend(corner);
+  for (std::size_t block = 0; block < blocks_.size(); ++block)
+    if (blocks_[block].intersects(around))
+      if (Chunk chunk = chunk_in(block, around); !chunk.faces.empty())
+        placed.chunks.push_back(std::move(chunk));
   return placed;
 }
 
-void MapLabels::find_faces(const map::Label& label, Placed& placed) const {
-  Eigen::AlignedBox2d around;
-  for (const geometry::Ring& ring : rings_from(label, surface_.origin().head<2>()))
-    for (const Eigen::Vector2d& corner : ring) around.extend(corner);
+MapLabels::Chunk MapLabels::chunk_in(std::size_t block, const Eigen::AlignedBox2d& around) const {
   const Mesh& mesh = surface_.mesh();
+  Chunk chunk;
   Eigen::AlignedBox3d space;
-  for (std::uint32_t face = 0; face < mesh.faces.size(); ++face) {
+  for (std::size_t face = block * kBlock; face < std::min(mesh.faces.size(), (block + 1) * kBlock);
+       ++face) {
     if (!mesh.unseen.empty() && mesh.unseen[face] != 0) continue;
     const Triangle corners = corners_of(mesh, face);
     Eigen::AlignedBox2d on_map;
     for (const Eigen::Vector3d& corner : corners) on_map.extend(surface_.to_map(corner).head<2>());
     if (!on_map.intersects(around)) continue;
-    placed.faces.push_back(face);
+    chunk.faces.push_back(static_cast<std::uint32_t>(face));
     for (const Eigen::Vector3d& corner : corners) space.extend(corner);
   }
-  if (placed.faces.empty()) return;
-  placed.centre = space.center();
-  placed.radius = space.diagonal().norm() / 2;
+  chunk.centre = space.center();
+  chunk.radius = space.diagonal().norm() / 2;
+  return chunk;
 }
 
 std::vector<SeenLabel> MapLabels::seen_in(const PosedRays& rays) const {
@@ -127,8 +147,7 @@ std::vector<SeenLabel> MapLabels::seen_in(const PosedRays& rays) const {
   for (std::size_t i = 0; i < labels_.size(); ++i) {
     const Placed& placed = placed_[i];
     SeenLabel found{i, {labels_[i].name, labels_[i].category, {}, {}}};
-    if (!placed.faces.empty() && pixels.cone().may_meet(placed.centre, placed.radius))
-      found.label.parts = parts_in(rays, placed, pixels);
+    if (!placed.chunks.empty()) found.label.parts = parts_in(rays, placed, pixels);
     for (const Eigen::Vector3d& point : placed.points)
       if (const auto pixel = surface_.pixel_of(rays, point)) found.label.points.push_back(*pixel);
     if (!found.label.parts.empty() || !found.label.points.empty()) seen.push_back(std::move(found));
@@ -140,7 +159,9 @@ std::vector<std::vector<geometry::Ring>> MapLabels::parts_in(const PosedRays& ra
                                                              const Placed& placed,
                                                              Pixels& pixels) const {
   pixels.clear();
-  for (const std::uint32_t face : placed.faces) pixels.add(corners_of(surface_.mesh(), face));
+  for (const Chunk& chunk : placed.chunks)
+    if (pixels.cone().may_meet(chunk.centre, chunk.radius))
+      for (const std::uint32_t face : chunk.faces) pixels.add(corners_of(surface_.mesh(), face));
   return geometry::region_outlines(pixels.grid(), [&](const Eigen::Vector2d& pixel) {
     if (!rays.is_in_photograph(pixel)) return false;
     const auto sight = rays.sight(pixel);
@@ -150,7 +171,7 @@ std::vector<std::vector<geometry::Ring>> MapLabels::parts_in(const PosedRays& ra
 }
 
 bool MapLabels::is_on_surface(std::size_t label) const {
-  return !placed_[label].faces.empty() || !placed_[label].points.empty();
+  return !placed_[label].chunks.empty() || !placed_[label].points.empty();
 }
 
 }  // namespace axial::labels

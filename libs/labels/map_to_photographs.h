@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -41,23 +42,29 @@ class MapLabels {
   bool is_on_surface(std::size_t label) const;
 
  private:
-  // A polygon with the faces that may lie above or below it, in a ball; or points.
+  // Faces in a ball [frame of the mesh].
+  struct Chunk {
+    std::vector<std::uint32_t> faces;
+    Eigen::Vector3d centre;
+    double radius = 0;
+  };
+  // A polygon with the faces that may lie above or below it; or points.
   struct Placed {
     std::vector<geometry::PolygonPieces> polygon;  // one, or none
-    std::vector<std::uint32_t> faces;
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // [frame of the mesh]
-    double radius = 0;
+    std::vector<Chunk> chunks;
     std::vector<Eigen::Vector3d> points;  // on the surface [map]
   };
   class Pixels;
 
+  void make_blocks();
   Placed placed(const map::Label& label) const;
-  void find_faces(const map::Label& label, Placed& placed) const;
+  Chunk chunk_in(std::size_t block, const Eigen::AlignedBox2d& around) const;
   std::vector<std::vector<geometry::Ring>> parts_in(const PosedRays& rays, const Placed& placed,
                                                     Pixels& pixels) const;
 
   const LabelledSurface& surface_;
   std::span<const map::Label> labels_;
+  std::vector<Eigen::AlignedBox2d> blocks_;  // around 256 consecutive faces each [map]
   std::vector<Placed> placed_;
 };
 

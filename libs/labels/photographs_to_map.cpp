@@ -54,10 +54,10 @@ class DrawnPolygon {
   Eigen::AlignedBox2d box_;
 };
 
-// Pixels inside the polygon, about a million at most, and its corners.
+// Pixels inside the polygon, 250,000 at most, and its corners.
 std::vector<Eigen::Vector2d> pixels_in(const DrawnPolygon& polygon, const Parts& parts,
                                        const CameraModel& camera) {
-  constexpr double kMost = 1e6;
+  constexpr double kMost = 250'000;
   const Eigen::Vector2d low = polygon.box().min().cwiseMax(0),
                         high = polygon.box().max().cwiseMin(
                             Eigen::Vector2d(camera.width - 1, camera.height - 1));
