@@ -16,21 +16,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLeastTargets = 3;
 
-// The file of places in the folder of a mesh, or in the folder of the poses inside it. Empty: none.
-fs::path places_beside(const fs::path& mesh, const char* option) {
-  const fs::path folder = mesh.parent_path();
-  const fs::path inside = folder / "refined" / control::kTargetPlaces,
-                 beside = folder / control::kTargetPlaces;
-  if (!fs::exists(inside)) return fs::exists(beside) ? beside : fs::path();
-  if (fs::exists(beside))
-    fail_in(beside, "{} is there, too; {} must state the file of the survey", inside.string(),
-            option);
-  return inside;
-}
-
 // Sets `file` if it is not stated. Returns whether there is one.
 bool find_places(const fs::path& mesh, const char* option, bool must, fs::path& file) {
-  if (file.empty()) file = places_beside(mesh, option);
+  if (file.empty()) file = control::places_beside(mesh, option);
   if (file.empty() && must)
     fail_in(mesh, "no {} in its folder or in refined/ there; {} states the file",
             control::kTargetPlaces, option);

@@ -85,6 +85,18 @@ bool is_determined(const TargetPlaces& places, std::size_t target) {
 
 }  // namespace
 
+std::filesystem::path places_beside(const std::filesystem::path& mesh, const std::string& option) {
+  const std::filesystem::path folder = mesh.parent_path();
+  const std::filesystem::path inside = folder / "refined" / kTargetPlaces,
+                              beside = folder / kTargetPlaces;
+  if (!std::filesystem::exists(inside))
+    return std::filesystem::exists(beside) ? beside : std::filesystem::path();
+  if (std::filesystem::exists(beside))
+    fail_in(beside, "{} is there, too; {} must state the file of the survey", inside.string(),
+            option);
+  return inside;
+}
+
 TargetPlaces read_target_places(const std::filesystem::path& file) {
   const std::string name = file.string();
   const json content = io::read_json(file);

@@ -29,6 +29,11 @@ struct TargetPlaces {
 // The file in the output folder of RefinePoses.
 inline constexpr const char* kTargetPlaces = "target_places.json";
 
+// The file of places that belongs to a mesh: in the folder of the mesh, or in the folder refined/
+// of the poses there. Empty: none. Error that names both files if both are there. `option`: by
+// which the user states the file, for the message.
+std::filesystem::path places_beside(const std::filesystem::path& mesh, const std::string& option);
+
 // Reads a file that write_target_places() wrote. Error of one line, which names the file and the
 // entry, for a file that cannot be read, an entry that is missing or is no finite number, two
 // targets with the same label, and a matrix that has another size than the list, is not symmetric

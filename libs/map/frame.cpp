@@ -143,18 +143,18 @@ void require_possible(double columns, double rows, double pixel, double most) {
 }
 
 MapGrid grid_around(const Mesh& mesh, const MapFrame& frame, double pixel, double most) {
-  Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Array2d high = -low;
+  Eigen::AlignedBox2d box;
   for (const auto& face : mesh.faces)
-    for (const std::uint32_t corner : face) {
-      const Eigen::Array2d at =
-          frame.to_map(mesh.vertices[corner].cast<double>()).head<2>().array();
-      low = low.min(at), high = high.max(at);
-    }
+    for (const std::uint32_t corner : face)
+      box.extend(frame.to_map(mesh.vertices[corner].cast<double>()).head<2>());
+  return grid_over(box, pixel, most);
+}
+
+MapGrid grid_over(const Eigen::AlignedBox2d& box, double pixel, double most) {
   // In pixels from the origin of the map.
   constexpr double kTolerance = 1e-3;
-  low = (low / pixel + kTolerance).floor();
-  high = (high / pixel - kTolerance).ceil().max(low + 1);
+  const Eigen::Array2d low = (box.min().array() / pixel + kTolerance).floor();
+  const Eigen::Array2d high = (box.max().array() / pixel - kTolerance).ceil().max(low + 1);
   const Eigen::Array2d size = high - low;
   require_possible(size.x(), size.y(), pixel, most);
   return {low.x() * pixel, high.y() * pixel, pixel, static_cast<int>(size.x()),

@@ -2,7 +2,7 @@
 // The axes of a map and its pixel grid.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -24,6 +24,9 @@ struct FittedPlane {
 // they have at most 2 % of the area and if the plane without them is another one. Error for a mesh
 // whose area is 0.
 FittedPlane fitted_plane(const Mesh& mesh);
+
+// As grid_around(), the smallest grid that contains the box [map].
+MapGrid grid_over(const Eigen::AlignedBox2d& box, double pixel, double most = kMostPixels);
 
 // Throws an Error if a side of a map has more than `most` pixels. The message calls the width of a
 // pixel the setting "ground_sample_distance".

@@ -12,13 +12,15 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # Files that parse or declare the options that they name.
 DECLARE_OPTIONS = {"libs/base/newer_options.cpp", "libs/base/option_values.cpp", "libs/base/program.cpp",
-                   "libs/io/openmvs/scene_options.cpp", "libs/survey/photograph_options.cpp"}
+                   "libs/boundary/options.cpp", "libs/io/openmvs/scene_options.cpp",
+                   "libs/survey/photograph_options.cpp"}
 COMMAND_LINES = "libs/experiments/"  # puts together command lines of programs
 
 # The programs that name the settings of each library, and how many settings the library has at least.
 PROGRAMS = {"libs/densify": (5, ["DensifyPointCloud"]), "libs/pose": (5, ["RefinePoses"]),
             "libs/map": (3, ["MapSurface"]), "libs/compare": (2, ["CompareSurveys"]),
             "libs/mesh": (3, ["ReconstructMesh"]),
+            "libs/boundary": (2, ["MapSurface", "TextureMesh", "ReconstructMesh", "CompareSurveys"]),
             "libs/texture": (1, ["TextureMesh"]), "libs/video": (1, ["ExtractFrames"]),
             "libs/io/obj": (2, ["ReconstructMesh", "RefineMesh"]), "libs/io/colmap": (3, ["InterfaceCOLMAP"]),
             "libs/survey": (2, ["DensifyPointCloud", "RefineMesh", "TextureMesh", "MapSurface"])}

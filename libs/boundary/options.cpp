@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "boundary/options.h"
+
+#include "base/error.h"
+#include "base/split.h"
+
+namespace axial::boundary {
+namespace {
+
+constexpr std::size_t kLeastTargets = 3;
+
+std::string without_blanks_around(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == std::string_view::npos ? "" : std::string(text.substr(first, last - first + 1));
+}
+
+std::vector<std::string> labels_of(const std::string& text) {
+  std::vector<std::string> labels;
+  for (const std::string_view part : split(text, ','))
+    labels.push_back(without_blanks_around(part));
+  for (const std::string& label : labels)
+    if (label.empty()) fail("--boundary-targets {}: has an empty label", text);
+  if (labels.size() < kLeastTargets)
+    fail("--boundary-targets {}: must be three or more labels, separated by commas", text);
+  return labels;
+}
+
+}  // namespace
+
+void declare(OptionList& list, Options& options) {
+  list.add("boundary", &options.file,
+           "polygons (GeoJSON, GeoPackage or shape file) outside of which everything is left out, "
+           "in the coordinates of the map")
+      .add_text(
+          "boundary-targets",
+          [&options](const std::string& text) { options.targets = labels_of(text); },
+          "in place of --boundary: labels of three or more targets at the corners, in their order "
+          "around the area, separated by commas")
+      .add("target-places", &options.places,
+           "places of these targets: of RefinePoses, or control points (default: "
+           "target_places.json in the folder of the mesh or in refined/ there)")
+      .add("boundary-map", &options.map,
+           "map of MapSurface that states the axes and the coordinate reference system in which "
+           "the boundary is meant");
+}
+
+void check(const ParsedOptions& parsed, const Options& options,
+           std::initializer_list<const char*> of_map) {
+  if (!options.file.empty() && !options.targets.empty())
+    fail("--boundary-targets contradicts --boundary: give one of them");
+  if (!options.places.empty() && options.targets.empty())
+    fail("--target-places {}: is only for --boundary-targets", options.places.string());
+  if (options.map.empty()) return;
+  if (!options.is_given())
+    fail("--boundary-map {}: is only for --boundary and --boundary-targets", options.map.string());
+  for (const char* option : of_map)
+    if (given(parsed, option)) fail("--{} contradicts --boundary-map, which states it", option);
+}
+
+}  // namespace axial::boundary
