@@ -18,6 +18,8 @@
 #include "base/output_lock.h"
 #include "base/parallel.h"
 #include "belong/surface_check.h"
+#include "boundary/boundary.h"
+#include "boundary/cut_mesh.h"
 #include "geometry/seen_part.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
@@ -91,6 +93,7 @@ TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame, const 
 }
 
 struct PlacedMap {
+  std::optional<boundary::Boundary> boundary;
   map::MapFrame frame;
   LocalFrame mesh_frame;
   map::MapGrid grid;
@@ -129,6 +132,10 @@ Eigen::Vector3d keep_seen_part(const Settings& settings, const survey::Survey& s
 // for another reason: the coordinates may be right, as those of the roof of a cave.
 void check_up(const Settings& settings, const Eigen::Vector3d& up, const Eigen::Vector3d& facing) {
   if (!map::shows_far_side(up, facing)) return;
+  if (!settings.boundary.map.empty())
+    fail_in(settings.boundary.map,
+            "its heights point away from the cameras, so that the map would show the far side of "
+            "the surface");
   if (settings.up && settings.epsg == 0)
     fail(
         "{} {}: points away from the cameras, so that the map would show the far side of the "
@@ -140,16 +147,17 @@ void check_up(const Settings& settings, const Eigen::Vector3d& up, const Eigen::
       settings.survey.files.scene.string());
 }
 
-// Error for a map that is far larger than the photographs can fill.
-void require_resolved(const map::MapGrid& grid, const survey::Survey& survey) {
+// Error for a map that is far larger than the photographs can fill. `remedy`: the words before the
+// option that makes pixels larger.
+void require_resolved(const map::MapGrid& grid, const survey::Survey& survey, const char* remedy) {
   constexpr double kMost = 1000;  // as many pixels as all photographs have together
   double pixels = 0;
   for (const survey::View& view : survey.views) pixels += static_cast<double>(view.pixels());
   if (static_cast<double>(grid.pixels()) > kMost * pixels)
     fail(
         "the map would have {} x {} pixels of {:.4g} m, and all photographs together have {:.0f} "
-        "times fewer: remove parts of the mesh that lie far away, or give a larger {}",
-        grid.columns, grid.rows, grid.pixel, static_cast<double>(grid.pixels()) / pixels,
+        "times fewer: {} {}",
+        grid.columns, grid.rows, grid.pixel, static_cast<double>(grid.pixels()) / pixels, remedy,
         setting("ground_sample_distance"));
 }
 
@@ -170,12 +178,20 @@ void warn_of_local_coordinates(const Settings& settings, const LocalFrame& frame
         settings.epsg, settings.survey.files.scene.string());
 }
 
+// Takes the direction of the heights and the reference system of the map of --boundary-map.
+void take_boundary_map(Settings& settings, std::string& crs) {
+  if (settings.boundary.map.empty()) return;
+  const boundary::MapPlace place = boundary::place_of_map(settings.boundary.map);
+  settings.up = place.axes.axes.row(2).transpose();
+  crs = place.crs;
+}
+
 // Heights are along z if the coordinates of the scene are those of a reference system: if the scene
 // has an offset, or if the user names the system.
 PlacedMap place_map(const Settings& settings, const Mesh& mesh, const survey::Survey& survey,
-                    const Eigen::Vector3d& facing, const Context& context) {
+                    const std::string& crs, const Eigen::Vector3d& facing, const Context& context) {
   const LocalFrame& frame = survey.frame;
-  const bool has_system = !frame.is_world() || settings.epsg > 0;
+  const bool has_system = !frame.is_world() || !crs.empty();
   const Eigen::Vector3d up = settings.up  ? *settings.up
                              : has_system ? Eigen::Vector3d::UnitZ()
                                           : map::fitted_up(mesh, centres_of(survey));
@@ -184,14 +200,24 @@ PlacedMap place_map(const Settings& settings, const Mesh& mesh, const survey::Su
   map.mesh_frame = frame;
   map.frame = map::frame_with_up(up, frame);
   map.is_georeferenced = has_system && map.frame.axes.isIdentity(0);
-  map.grid = map::grid_around(mesh, map.frame, pixel_of(settings, mesh, survey, context));
-  require_resolved(map.grid, survey);
+  map.grid.pixel = pixel_of(settings, mesh, survey, context);
+  if (settings.boundary.is_given())
+    map.boundary = boundary::read_boundary(settings.boundary, map::world_axes(map.frame, frame),
+                                           crs, frame, settings.mesh);
   const auto& axes = map.frame.axes;
-  log_info("map of {} x {} pixels of {:.4g} m", map.grid.columns, map.grid.rows, map.grid.pixel);
   log_info("map's x: {:.4f} {:.4f} {:.4f}, y: {:.4f} {:.4f} {:.4f}, up: {:.4f} {:.4f} {:.4f}",
            axes(0, 0), axes(0, 1), axes(0, 2), axes(1, 0), axes(1, 1), axes(1, 2), axes(2, 0),
            axes(2, 1), axes(2, 2));
   return map;
+}
+
+// Marks the faces outside of the boundary. They stay until the views of the others are known,
+// because they hide parts of them.
+void mark_outside(const PlacedMap& place, TexturedMesh& mesh, const Context& context) {
+  context.memory().require(boundary::bytes_to_mark(mesh.mesh), "cutting the mesh at the boundary");
+  const std::size_t outside = boundary::mark_outside(mesh, *place.boundary);
+  log_info("{}: {} faces are inside and {} are left out", place.boundary->name(),
+           mesh.mesh.faces.size() - outside, outside);
 }
 
 // The values of each face of the mesh that the maps show.
@@ -267,6 +293,30 @@ TexturedMesh textured(TexturedMesh mesh, const survey::Photographs& photographs,
   return result;
 }
 
+// Chooses the pixels of the map: those of the boundary, or else those of the mesh.
+void place_pixels(const Mesh& mesh, const survey::Survey& survey, PlacedMap& place) {
+  const double pixel = place.grid.pixel;
+  if (place.boundary) {
+    naming(place.boundary->name(), [&] {
+      place.grid = map::grid_over(place.boundary->extent(), pixel);
+      require_resolved(place.grid, survey, "make the polygons smaller, or give a larger");
+    });
+  } else {
+    place.grid = map::grid_around(mesh, place.frame, pixel);
+    require_resolved(place.grid, survey,
+                     "remove parts of the mesh that lie far away, or give a larger");
+  }
+  log_info("map of {} x {} pixels of {:.4g} m", place.grid.columns, place.grid.rows, pixel);
+}
+
+// Removes the faces that mark_outside() marked.
+void remove_outside(TexturedMesh& mesh, FaceFacts& facts) {
+  const std::vector<std::uint32_t> outside = boundary::outside_faces(mesh.mesh);
+  geometry::erase_at(outside, facts.views);
+  geometry::erase_at(outside, facts.errors);
+  boundary::remove_outside(mesh);
+}
+
 void write(const Settings& settings, const TexturedMesh& mesh, const FaceFacts& facts,
            const PlacedMap& place, const std::string& crs, const Context& context) {
   map::WriteOptions options;
@@ -296,9 +346,10 @@ int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   share_one_heap();
-  const Settings& settings = options.settings;
+  Settings settings = options.settings;
   const Context context = program_context(options.parsed);
-  const std::string crs = settings.epsg > 0 ? map::crs_of_epsg(settings.epsg) : "";
+  std::string crs = settings.epsg > 0 ? map::crs_of_epsg(settings.epsg) : "";
+  take_boundary_map(settings, crs);
   const OutputLock lock = lock_output(map_files(settings).heights);
   survey::Survey survey = survey::open_scene(settings.survey, context);
   TexturedMesh mesh = read_mesh(settings, survey.frame, context);
@@ -308,13 +359,16 @@ int run(int argc, char** argv) {
                         context);
   survey::find_photographs(survey, context);
   survey.add_inputs(io::files_of_mesh(settings.mesh));
+  survey.add_inputs(settings.boundary.inputs());
   survey.scene = {};
   return_freed_memory();
   const survey::Photographs photographs(survey);
   naming(settings.mesh, [&] {
     const Eigen::Vector3d facing = keep_seen_part(settings, survey, mesh, context);
-    const PlacedMap place = place_map(settings, mesh.mesh, survey, facing, context);
+    PlacedMap place = place_map(settings, mesh.mesh, survey, crs, facing, context);
     survey.keep_inputs(map_files(settings).all(), setting("output_file"));
+    if (place.boundary) mark_outside(place, mesh, context);
+    place_pixels(mesh.mesh, survey, place);
     std::optional<map::HeightErrors> errors;
     if (settings.image_noise > 0)
       errors.emplace(survey::posed_cameras(survey), place.frame.axes.row(2).transpose(),
@@ -324,6 +378,7 @@ int run(int argc, char** argv) {
       mesh = textured(std::move(mesh), photographs, errors, facts, context);
     else
       facts = look_at_faces(mesh.mesh, photographs, errors, context);
+    if (place.boundary) remove_outside(mesh, facts);
     return_freed_memory();
     photographs.report(context);
     write(settings, mesh, facts, place, crs, context);

@@ -55,6 +55,7 @@ void declare_map(OptionList& list, Raw& raw, Settings& settings) {
                         "write contour lines with this difference of heights [m] (0: none)")
       .range(0, 1e6)
       .sets("contour_interval");
+  boundary::declare(list, settings.boundary);
 }
 
 void declare_photographs(OptionList& list, Settings& settings) {
@@ -73,6 +74,7 @@ void convert(const Raw& raw, Options& options) {
   settings.output =
       output_or(settings.output, without_known_extension(scene) += "_map", "--output-file");
   settings.up = map::parse_up(raw.up, settings.epsg);
+  boundary::check(options.parsed, settings.boundary, {"up", "epsg"});
   survey::take_masks(options.parsed, settings.survey);
   settings.survey.compares_photographs = true;
 }

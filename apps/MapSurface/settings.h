@@ -9,6 +9,7 @@
 
 #include "axial/survey.h"
 #include "base/program.h"
+#include "boundary/options.h"
 #include "map/height_error.h"
 
 namespace axial::apps {
@@ -18,8 +19,9 @@ struct Settings {
   std::filesystem::path mesh;
   std::filesystem::path output;       // the names of the maps without ".dem.tif" and so on
   std::optional<Eigen::Vector3d> up;  // in the world; empty: see place_map() in main.cpp
-  double pixel = 0;                   // of the map [m]; 0: from the photographs
-  int epsg = 0;                       // 0: no coordinate reference system
+  boundary::Options boundary;
+  double pixel = 0;  // of the map [m]; 0: from the photographs
+  int epsg = 0;      // 0: no coordinate reference system
   bool hillshade = false;
   double image_noise =
       map::kDefaultNoise;  // for the expected errors of heights [px]; 0: no map of them
