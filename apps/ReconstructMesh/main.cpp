@@ -5,6 +5,8 @@
 #include "base/naming.h"
 #include "base/output_lock.h"
 #include "belong/surface_check.h"
+#include "boundary/cut_mesh.h"
+#include "boundary/scene_boundary.h"
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
@@ -26,10 +28,17 @@ LockUse lock_use(const Options& options) {
   return options.tiling.tile ? LockUse::shared : LockUse::alone;
 }
 
+// The mesh beside which the places of targets are looked for.
+const fs::path& mesh_to_cut(const Options& options) {
+  return options.mesh.empty() ? options.output : options.mesh;
+}
+
 survey::Survey open(const Options& options, const Context& context) {
   survey::Survey survey = survey::open_scene(options.survey, context);
   survey.add_inputs(std::vector{cloud_file(options)});
   survey.add_inputs(io::files_of_mesh(options.mesh));
+  survey.add_inputs(options.boundary.inputs());
+  boundary::check_files(options.boundary, mesh_to_cut(options));
   survey.keep_inputs(std::vector{options.output}, "--output-file");
   if (auto& region = survey.scene.region) region = with_border(*region, options.roi_border);
   return survey;
@@ -89,6 +98,17 @@ Mesh without_unseen(Mesh mesh, const io::SceneWithCameras& scene, const Options&
   });
 }
 
+// Removes what is outside of the boundary.
+void cut(const io::SceneWithCameras& scene, const Options& options, Mesh& mesh,
+         const Context& context) {
+  if (!options.boundary.is_given()) return;
+  boundary::SceneFacts facts{scene.frame, {}, mesh_to_cut(options)};
+  for (const geometry::PosedCamera& camera : geometry::posed_cameras(scene.scene))
+    facts.centres.push_back(camera.pose.centre);
+  boundary::mark_outside(options.boundary, facts, mesh, context);
+  boundary::remove_outside(mesh);
+}
+
 void write(const fs::path& file, const Mesh& mesh, const LocalFrame& frame,
            const Context& context) {
   if (!mesh.unseen.empty() && file.extension() != ".ply")
@@ -114,6 +134,7 @@ int run(int argc, char** argv) {
                                        : clean_given(scene, options, keep, context);
   return_freed_memory();
   mesh = without_unseen(std::move(mesh), scene, options, keep, context);
+  cut(scene, options, mesh, context);
   write(options.output, mesh, scene.frame, context);
   remove_tiles(options);
   return 0;

@@ -90,6 +90,7 @@ void declare_cleaning(OptionList& list, Options& options) {
       .range(-1e6, 1e6)
       .add_with_default("crop-to-roi", &options.reconstruct.crop_to_region,
                         "crop the mesh to the region of interest, if the scene has one");
+  boundary::declare(list, options.boundary);
 }
 
 void take_paths(const Raw& raw, Options& options) {
@@ -150,6 +151,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   options.reconstruct.clean.cut_off = options.reconstruct.clean.spurious;
   take_paths(raw, options);
   take_tiles(raw, options);
+  boundary::check(options.parsed, options.boundary);
   warn_of_no_effect(options);
   return options;
 }

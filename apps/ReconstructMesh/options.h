@@ -7,6 +7,7 @@
 #include "axial/survey.h"
 #include "base/program.h"
 #include "base/tiling.h"
+#include "boundary/options.h"
 #include "mesh/reconstruct.h"
 
 namespace axial::apps {
@@ -19,7 +20,8 @@ struct Options {
   std::filesystem::path output;  // .ply, .obj or .glb
   double roi_border = 0;
   Tiling tiling;
-  bool close_unseen = false;  // mark surface that no two cameras see instead of removing it
+  boundary::Options boundary;  // faces outside are removed
+  bool close_unseen = false;   // mark surface that no two cameras see instead of removing it
   mesh::ReconstructOptions reconstruct;
 };
 

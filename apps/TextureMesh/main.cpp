@@ -10,6 +10,8 @@
 #include "base/output_lock.h"
 #include "base/tiling.h"
 #include "belong/surface_check.h"
+#include "boundary/cut_mesh.h"
+#include "boundary/scene_boundary.h"
 #include "cloud/tiles.h"
 #include "geometry/seen_part.h"
 #include "io/openmvs/point_source.h"
@@ -67,6 +69,7 @@ void keep_inputs(const Settings& settings, const survey::Survey& survey, std::si
 // What the meshes of all tiles have.
 struct Written {
   std::size_t textures = 0, faces = 0;
+  std::size_t outside = 0;  // faces outside of the boundary, which are left out
 };
 
 void write(const Settings& settings, const LocalFrame& frame, std::size_t tile,
@@ -90,7 +93,7 @@ void report(const Written& written, const texture::Report& facts) {
   if (facts.new_faces > 0)
     log_info("{} faces were added by splitting faces whose image is not linear", facts.new_faces);
   log_info("{} parts of photographs in {} textures; {} of {} faces are not seen", facts.charts,
-           written.textures, facts.unseen_faces, written.faces);
+           written.textures, facts.unseen_faces - written.outside, written.faces);
 }
 
 // The options of texture_mesh(), with the memory to read a photograph and to write the results.
@@ -107,6 +110,24 @@ texture::Options with_memory(const Settings& settings, const survey::Photographs
   return options;
 }
 
+// Marks the faces outside of the boundary. They are textured by no photograph, and stay until the
+// end, because they hide parts of the other faces.
+void mark_outside(const Settings& settings, const survey::Survey& survey, Mesh& mesh,
+                  const Context& context) {
+  if (!settings.boundary.is_given()) return;
+  boundary::SceneFacts scene{survey.frame, {}, settings.mesh};
+  for (const survey::View& view : survey.views) scene.centres.push_back(view.pose.centre);
+  boundary::mark_outside(settings.boundary, scene, mesh, context);
+  return_freed_memory();
+}
+
+// Removes the faces that mark_outside() marked. Returns their number.
+std::size_t remove_outside(const Settings& settings, TexturedMesh& mesh) {
+  const std::size_t before = mesh.mesh.faces.size();
+  if (settings.boundary.is_given()) boundary::remove_outside(mesh);
+  return before - mesh.mesh.faces.size();
+}
+
 void texture_and_write(const Settings& settings, const survey::Survey& survey, Mesh mesh,
                        const Eigen::Matrix3d& axes, const Context& context) {
   const survey::Photographs photographs(survey);
@@ -117,7 +138,8 @@ void texture_and_write(const Settings& settings, const survey::Survey& survey, M
   naming(settings.mesh, [&] {
     texture::texture_tiles(
         std::move(mesh), survey::posed_cameras(survey), texture::source_of(photographs), options,
-        [&](std::size_t tile, const TexturedMesh& textured) {
+        [&](std::size_t tile, TexturedMesh textured) {
+          written.outside += remove_outside(settings, textured);
           return_freed_memory();
           if (tile == 0) photographs.report(context);
           keep_inputs(settings, survey, tile, textured.textures.size());
@@ -157,12 +179,14 @@ int run(int argc, char** argv) {
   mesh = simplified(settings, std::move(mesh), context);
   survey::find_photographs(survey, context);
   survey.add_inputs(io::files_of_mesh(settings.mesh));
+  survey.add_inputs(settings.boundary.inputs());
   for (std::size_t tile = 0; tile < settings.texture.tiles; ++tile)
     keep_inputs(settings, survey, tile, 1);
   const Eigen::Matrix3d axes = cloud::tile_axes(survey.scene);
   survey.scene = {};
   return_freed_memory();
   check_sides(settings, survey, mesh, context);
+  mark_outside(settings, survey, mesh, context);
   texture_and_write(settings, survey, std::move(mesh), axes, context);
   warn_of_other_tiles(other_tiles(settings.output, settings.texture.tiles), context);
   return 0;

@@ -68,6 +68,7 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
   survey::declare_masks(list, settings.survey);
   io::declare_bit_depth(list, settings.survey.bit_depth);
   survey::declare_colors(list, settings.survey);
+  boundary::declare(list, settings.boundary);
 }
 
 void declare_texturing(OptionList& list, Raw& raw, texture::Options& options) {
@@ -126,6 +127,7 @@ void convert(const Raw& raw, Options& options) {
   settings.survey.files = io::scene_files(raw.scene, raw.input, options.parsed);
   if (settings.mesh.empty()) settings.mesh = io::cloud_beside(settings.survey.files.scene);
   take_output(raw, settings);
+  boundary::check(options.parsed, settings.boundary);
   survey::take_masks(options.parsed, settings.survey);
   settings.survey.compares_photographs = true;
   for (unsigned k = 0; k < 3; ++k)

@@ -10,6 +10,7 @@
 #include "axial/survey.h"
 #include "axial/texture.h"
 #include "base/program.h"
+#include "boundary/options.h"
 #include "io/textured/textured_mesh.h"
 
 namespace axial::apps {
@@ -20,6 +21,7 @@ struct Settings {
   std::vector<io::TexturedFormat> formats;
   double decimate = 1;           // fraction of the faces that are kept before texturing
   std::size_t close_holes = 30;  // with `decimate` below 1: CleanOptions::close_holes
+  boundary::Options boundary;    // faces outside are left out
   texture::Options texture;
 };
 
