@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finds what changed between two surveys of the same place: maps of differences, volumes.
 
+#include <memory>
 #include <numbers>
 #include <system_error>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "base/naming.h"
 #include "base/output_lock.h"
 #include "belong/surface_check.h"
+#include "boundary/boundary.h"
 #include "compare/write_changes.h"
 #include "geometry/faces.h"
 #include "geometry/seen_part.h"
@@ -109,6 +111,7 @@ void keep_inputs(const Settings& settings) {
   }
   for (const fs::path& file : {settings.targets_before, settings.targets_after})
     if (!file.empty()) inputs.push_back(file);
+  for (const fs::path& file : settings.boundary.inputs()) inputs.push_back(file);
   survey::keep_inputs(outputs, inputs, "--output-file");
 }
 
@@ -116,6 +119,27 @@ void keep_inputs(const Settings& settings) {
 // origin, or if the user names the system.
 bool has_system(const Settings& settings, const LocalFrame& frame) {
   return !frame.is_world() || settings.epsg > 0;
+}
+
+// Takes the direction of the heights and the reference system of the map of --boundary-map.
+void take_boundary_map(Settings& settings, std::string& crs) {
+  if (settings.boundary.map.empty()) return;
+  const boundary::MapPlace place = boundary::place_of_map(settings.boundary.map);
+  settings.up = place.axes.axes.row(2).transpose();
+  crs = place.crs;
+}
+
+// The test of the places to compare.
+std::function<bool(const Eigen::Vector2d&)> inside_of(const Settings& settings,
+                                                      const std::string& crs,
+                                                      const map::MapFrame& map_frame,
+                                                      const LocalFrame& frame) {
+  if (!settings.boundary.is_given()) return {};
+  boundary::Options options = settings.boundary;
+  if (options.places.empty()) options.places = settings.targets_before;
+  const auto boundary = std::make_shared<const boundary::Boundary>(boundary::read_boundary(
+      options, map::world_axes(map_frame, frame), crs, frame, settings.before));
+  return [boundary](const Eigen::Vector2d& place) { return boundary->contains_on_map(place); };
 }
 
 // Which side of a survey's surface is the near one.
@@ -152,6 +176,10 @@ void check_up(const Settings& settings, const LocalFrame& frame, const Eigen::Ve
       side.is_seen ? ""
                    : "; if the faces are turned the wrong way, flip them in an editor, or give "
                      "--scene and --other-scene, whose cameras show which side is up";
+  if (!settings.boundary.map.empty())
+    fail_in(settings.boundary.map,
+            "its heights point away from {} {}, so that what came would count as gone{}", what,
+            name, remedy);
   if (settings.up && settings.epsg == 0)
     fail("--up {}: points away from {} {}, so that what came would count as gone; give --up {}{}",
          map::up_text(up), what, name, map::up_text(-up), remedy);
@@ -301,6 +329,7 @@ int run(int argc, char** argv) {
   compare::ChangeFacts facts{settings.before.filename().string(),
                              settings.after.filename().string()};
   if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg);
+  take_boundary_map(settings, facts.crs);
   const OutputLock lock = lock_output(change_files(settings).difference);
   const std::optional<ByTargets> by_targets = register_by_targets(settings);
   if (settings.align == Align::automatic) settings.compare.align = !by_targets;
@@ -309,12 +338,14 @@ int run(int argc, char** argv) {
   facts.aligned = settings.compare.align || by_targets;
   const map::MapFrame map_frame =
       place_map(settings, surveys.before, surveys.frame, surveys.near_before, surveys.near_after);
-  facts.is_georeferenced = has_system(settings, surveys.frame) && map_frame.axes.isIdentity(0);
+  const bool is_known = has_system(settings, surveys.frame) || !facts.crs.empty();
+  facts.is_georeferenced = is_known && map_frame.axes.isIdentity(0);
   if (by_targets) {
     facts.by_targets = by_targets->found;
     facts.labels = by_targets->labels;
     settings.compare.registered = compare::on_map(by_targets->found, map_frame, surveys.frame);
   }
+  settings.compare.is_inside = inside_of(settings, facts.crs, map_frame, surveys.frame);
   keep_inputs(settings);
   settings.compare.name_before = settings.before;
   settings.compare.name_after = settings.after;

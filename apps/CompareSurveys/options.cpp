@@ -48,6 +48,7 @@ void declare_map(OptionList& list, Raw& raw, Settings& settings) {
                         "EPSG code of the coordinate reference system of the surveys, a projected "
                         "one in metres (0: none)")
       .range(0, 1 << 20);
+  boundary::declare(list, settings.boundary);
 }
 
 void declare_comparison(OptionList& list, Raw& raw, Settings& settings) {
@@ -84,6 +85,7 @@ void declare_comparison(OptionList& list, Raw& raw, Settings& settings) {
 }
 
 void check(const ParsedOptions& parsed, const Raw& raw, const Settings& settings) {
+  boundary::check(parsed, settings.boundary, {"up", "epsg"});
   if (given(parsed, "min-views") && settings.scene_before.empty() && settings.scene_after.empty())
     fail("--min-views needs --scene or --other-scene");
   const bool by_targets = settings.align == Align::targets || settings.align == Align::automatic;

@@ -9,6 +9,7 @@
 
 #include "axial/compare.h"
 #include "base/program.h"
+#include "boundary/options.h"
 
 namespace axial::apps {
 
@@ -23,6 +24,7 @@ struct Settings {
   std::filesystem::path working_folder;
   std::filesystem::path output;       // the names of the files without ".change.json" and so on
   std::optional<Eigen::Vector3d> up;  // in the world; empty: see place_map() in main.cpp
+  boundary::Options boundary;         // in the coordinates of the earlier survey
   int epsg = 0;                       // 0: no coordinate reference system
   compare::CompareOptions compare;
 };

@@ -185,6 +185,24 @@ Noise noise_of(const cv::Mat1f& difference, const cv::Mat1b& unseen, const cv::M
   return estimate_noise(seen, steepness, least);
 }
 
+// Leaves out the places that are not inside of CompareOptions::is_inside.
+void keep_inside(const CompareOptions& options, Comparison& result) {
+  if (!options.is_inside) return;
+  const map::MapGrid& grid = result.grid;
+  parallel_for(static_cast<std::size_t>(grid.rows), [&](std::size_t row) {
+    const auto y = static_cast<int>(row);
+    for (int x = 0; x < grid.columns; ++x)
+      if (!options.is_inside(grid.centre(y, x, 0).head<2>()))
+        result.difference(y, x) = std::numeric_limits<float>::quiet_NaN();
+  });
+  if (std::ranges::all_of(result.difference, [](float value) { return std::isnan(value); }))
+    fail_in(options.name_after,
+            "no place of both surveys is inside of the boundary: they have x from {:.2f} to {:.2f} "
+            "and y from {:.2f} to {:.2f} in common",
+            grid.left, grid.left + grid.columns * grid.pixel, grid.top - grid.rows * grid.pixel,
+            grid.top);
+}
+
 void fill_sigma(const Maps& maps, Comparison& comparison) {
   comparison.sigma = cv::Mat1f(comparison.difference.size(), 0.f);
   for (int y = 0; y < comparison.sigma.rows; ++y)
@@ -286,6 +304,7 @@ Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::Map
   require_seen_places(result.difference, unseen, options);
   require_same_place(result.place, options);
   result.noise = noise_of(result.difference, unseen, maps.steepness, options, result.grid.pixel);
+  keep_inside(options, result);
   fill_sigma(maps, result);
   maps = {};
   ChangeOptions changes = options.changes;

@@ -7,7 +7,9 @@ import math
 import os
 import random
 
+from boundary_test import is_inside, places
 from geotiff import read_geotiff
+from measure_surface_test import polygons
 from programs import ProgramTest, contents, files_below, main, png, read, write
 from tiny_scene import mvs
 from worlds import Wall, grid, ply, turned
@@ -201,6 +203,53 @@ class Outputs(CompareTest):
             write(self.path("work", name), "".join(line for line in lines if line[0] in "#vf"
                                                    and not line.startswith("vt")))
         same_volumes()
+
+
+
+class InsideOfABoundary(CompareTest):
+    """Of the two blocks, only the one that came is inside."""
+    PLOT = ((0.9, 0.5), (1.5, 0.45), (1.45, 1.1), (0.95, 1.05))
+
+    def setUp(self):
+        super().setUp()
+        write(self.path("work", "plot.geojson"), polygons(plot=[list(corner) for corner in self.PLOT]))
+
+    def test_only_places_inside_are_compared(self):
+        self.succeeds(*self.compare("--align", "icp", "--up", "0,0,1"))
+        whole, registration = self.report(), self.report()["registration"]
+        self.succeeds(*self.compare("--align", "icp", "--up", "0,0,1", "--boundary", "plot.geojson"))
+        cut = self.report()
+        self.assertEqual(cut["registration"], registration)
+        self.assertEqual(cut["came"], whole["came"])
+        self.assertEqual((cut["gone"]["regions"], cut["gone"]["volume"]), (0, 0))
+        difference, classes = self.map("difference"), self.map("significant")
+        inside = 0
+        for row, values in enumerate(difference.rows):
+            for column, value in enumerate(values):
+                is_in = is_inside(self.PLOT, difference.left + (column + 0.5) * difference.pixel,
+                                  difference.top - (row + 0.5) * difference.pixel)
+                inside += is_in
+                self.assertEqual((value != -9999, classes.rows[row][column] != 255), (is_in, is_in))
+        self.assertAlmostEqual(cut["area_compared"], inside * difference.pixel ** 2, 9)
+
+    def test_corners_are_targets_of_the_earlier_survey(self):
+        self.succeeds(*self.compare("--align", "icp", "--up", "0,0,1", "--boundary", "plot.geojson"))
+        by_file = self.map("difference").rows
+        write(self.path("work", "target_places.json"), places(**{
+            f"t{number}": (x, y, 0) for number, (x, y) in enumerate(self.PLOT, 1)}))
+        self.succeeds(*self.compare("--align", "icp", "--up", "0,0,1", "--boundary-targets", "1,2,3,4"))
+        self.assertEqual(self.map("difference").rows, by_file)
+
+    def test_a_boundary_beside_the_surveys_is_refused(self):
+        write(self.path("work", "away.geojson"), polygons(away=[[5, 5], [6, 5], [6, 6]]))
+        self.refuses_each(
+            self.compare("--align", "none"),
+            ("b.ply: no place of both surveys is inside of the boundary: they have x from ", "--boundary",
+             "away.geojson"),
+            ("none.gpkg: ", "--boundary", "none.gpkg"),
+            ("a.ply: no target_places.json in its folder", "--boundary-targets", "1,2,3"),
+            ("--up contradicts --boundary-map", "--up", "0,0,1", "--boundary", "away.geojson", "--boundary-map",
+             "a.tif"))
 
 
 class UpAndDown(CompareTest):

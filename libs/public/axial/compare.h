@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <vector>
@@ -158,6 +159,9 @@ struct CompareOptions {
   std::optional<Sigmas> sigmas = {};
   ChangeOptions changes = {};
   SurveyPhotos photos = {};
+  // Whether a place on the map [m] is compared; empty: all places are. Other places only help to
+  // find the registration and the noise. Called by several threads.
+  std::function<bool(const Eigen::Vector2d& place)> is_inside = {};
   // Whether surveys are compared although they show different places.
   bool allow_other_place = false;
   // For the fields `pixel`, "ground_sample_distance", `photos.least`, "min_views", and
@@ -213,9 +217,10 @@ Eigen::Vector3d upward_direction(const Mesh& mesh, const Eigen::Vector3d& facing
 // their reliefs show different places, unless CompareOptions::allow_other_place is set; the places
 // that photographs do not see do not count. Error if the map has too many
 // pixels (grid_around()), if the photographs see no place of both surveys, and if the memory does
-// not suffice. The result does not depend on the number of threads. The stages "Registration"
-// (steps), "Heights" (blocks of the map, of both surveys) and "Sights" (rows of the map, of a
-// survey with photographs) report their progress.
+// not suffice. Error that names the later survey if no place is inside of
+// CompareOptions::is_inside. The result does not depend on the number of threads. The stages
+// "Registration" (steps), "Heights" (blocks of the map, of both surveys) and "Sights" (rows of the
+// map, of a survey with photographs) report their progress.
 Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
                            const CompareOptions& options, const Context& context = {});
 
