@@ -277,6 +277,45 @@ class WithStandIns(StandIns):
         self.write("known.txt", "0.png 1 2 3\n")
         self.assertIn("must be from 0 to", self.refused("--epsg", "-1", "--scale-from", "positions:known.txt"))
 
+    def test_maps_are_cut_at_a_boundary(self):
+        plot, out = self.write("plot.geojson", "{}"), self.folder / "out"
+        self.succeeds("--boundary", "plot.geojson")
+        self.assertIn(f" --boundary {plot}", self.command_of("MapSurface"))
+        self.assertEqual("\n".join(self.commands()).count("--boundary"), 1)
+        plot.write_text("other")
+        self.assertEqual(self.done_before("--boundary", "plot.geojson"), 10)
+        targets = ["--targets", self.write("targets.json", "{}"), "--boundary-targets", "1,target 2,3"]
+        self.succeeds(*targets)
+        self.assertIn(f" --boundary-targets 1,target 2,3 --target-places {out}/refined/target_places.json",
+                      self.command_of("MapSurface"))
+        self.succeeds(*targets, "--map=--boundary-targets 4,5,6")
+        self.assertEqual(self.command_of("MapSurface").count("--boundary-targets"), 1)
+
+    def test_a_comparison_is_cut_by_targets_of_the_earlier_survey(self):
+        self.write("before/scene_dense_mesh.ply", "")
+        plot, targets = self.write("plot.geojson", "{}"), self.write("targets.json", "{}")
+        options = ["--earlier", "before", "--without", "page", "--targets", targets]
+        self.assertNotIn("--boundary", self.compared(*options, "--boundary", plot))
+        by_targets = [*options, "--boundary-targets", "1,2,3"]
+        self.assertNotIn("--boundary", self.compared(*by_targets))
+        places = self.write("before/refined/target_places.json", "{}")
+        self.assertIn(f" --boundary-targets 1,2,3 --target-places {places}", self.compared(*by_targets))
+        self.assertTrue(self.compared(*options, "--boundary", plot, f"--compare=--boundary {plot}").endswith(
+            f" --boundary {plot}"))
+
+    def test_a_wrong_boundary_is_refused(self):
+        self.write("plot.geojson", "{}")
+        targets = ["--targets", self.write("targets.json", "{}")]
+        for told, *options in (
+                ("--boundary none: file not found", "--boundary", "none"),
+                ("--boundary-targets contradicts --boundary", *targets, "--boundary", "plot.geojson",
+                 "--boundary-targets", "1,2,3"),
+                ("--boundary-targets 1,2,3: needs --targets", "--boundary-targets", "1,2,3"),
+                ("--boundary-targets 1,2,: must be three or more labels", *targets, "--boundary-targets", "1,2,"),
+                (f"--boundary {self.folder}/plot.geojson: is for the maps, which this run does not make",
+                 "--boundary", "plot.geojson", "--without", "map")):
+            self.assertIn(told, self.refused(*options))
+
     def test_an_earlier_survey_is_compared(self):
         self.write("before/scene_dense_mesh.ply", "")
         said = self.succeeds("--earlier", "before", "--without", "refine-mesh,texture,map,page")

@@ -7,8 +7,8 @@ import itertools
 import os
 import pathlib
 
-from . import (cameras, cluster, colmap, control, dates, doubles, estimates, files, first_checks, first_look, lenses,
-               masks, matching, photographs, poses, positions, video)
+from . import (boundary, cameras, cluster, colmap, control, dates, doubles, estimates, files, first_checks, first_look,
+               lenses, masks, matching, photographs, poses, positions, video)
 from .failure import Failure
 from .option_files import find_option, has_option
 from .ownership import is_record
@@ -43,6 +43,7 @@ def options(script_folder, description, words=None):
                         help="known lengths or positions [m], as for RefinePoses")
     control.add_options(parser)
     dates.add_options(parser)
+    boundary.add_options(parser)
     masks.add_options(parser)
     parser.add_argument("--refine", default="",
                         help="values of lens and port to estimate, as for RefinePoses (default: auto)")
@@ -186,6 +187,7 @@ def check_results(given):
     check_restoring(given)
     if given.las and given.until == "poses":
         raise Failure("--las: is for the cloud, which --until poses does not make")
+    boundary.check_results(given, wanted_steps(given))
     if given.compare and not given.earlier:
         raise Failure(f"--compare {given.compare}: is only for --earlier")
     if given.earlier and given.until in ("poses", "cloud"):
@@ -299,6 +301,7 @@ def check_paths(given):
     masks.check(given)
     control.check(given)
     dates.check(given)
+    boundary.check(given)
     file = positions.file_of(given.scale_from)
     if file is not None:
         given.scale_from = positions.PREFIX + files.existing("--scale-from", given.scale_from, file, is_file=True)

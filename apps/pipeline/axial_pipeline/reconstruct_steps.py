@@ -3,8 +3,8 @@
 
 import pathlib
 
-from . import (cameras, colmap, control, database, features, left_out, lenses, masks, matching, poses, positions,
-               start_lens, still_features, turns, video)
+from . import (boundary, cameras, colmap, control, database, features, left_out, lenses, masks, matching, poses,
+               positions, start_lens, still_features, turns, video)
 from .option_files import find_option, has_option, read_by, without_options
 from .programs import Programs, words_of
 from .reconstruct_options import keeps_depth_maps, wanted_steps
@@ -316,11 +316,11 @@ def map_step(run, name, mesh, output, *options):
     if name == "raw-map":
         words = without_options(words, ("--colors",))
     command = run.programs.map_surface(run.scene, mesh, output, *REFRACTIVE,
-                                       *mask_words(run.words("texture"), words), *options,
-                                       *run.system(words), *words)
+                                       *mask_words(run.words("texture"), words), *options, *run.system(words),
+                                       *not_given_again(boundary.options(run.given, run.out), words), *words)
     made = [output.with_name(f"{output.name}.{kind}.tif") for kind in ("dem", "ortho", "views")]
     also = [*read_by(command, run.own("texture")), *(read_by(command, run.own("map")) if name != "map" else [])]
-    return run.step(name, command, Files(*made), also=also,
+    return run.step(name, command, Files(*made), also=[*also, *boundary.files_of(run.given, run.out)],
                     anew=run.made_before(name))  # not every command writes all of them again
 
 
@@ -342,10 +342,13 @@ def survey_steps(run, wanted):
     if "compare" in wanted:
         earlier, words = pathlib.Path(given.earlier).with_name(run.scene.name), run.words("compare")
         registration, places = words_about_registration(run, words)
+        of_earlier = earlier.parent / "refined" / control.PLACES
+        limits = boundary.options_of_comparison(given, out, of_earlier)
         command = programs.compare_surveys(given.earlier, best_mesh(given, out), out / "scene",
                                            *words_about_surveys(words, registration, earlier, run.scene),
-                                           *run.system(words), *words)
-        yield run.step("compare", command, out / "scene.change.json", reads=[given.earlier, earlier, *places[:1]],
+                                           *run.system(words), *not_given_again(limits, words), *words)
+        read = dict.fromkeys([*places[:1], *([of_earlier] if limits else []), *boundary.files_of(given, out)])
+        yield run.step("compare", command, out / "scene.change.json", reads=[given.earlier, earlier, *read],
                        anew=run.made_before("compare"))
     if "page" in wanted:
         command = programs.view_scene(run.scene, shown_cloud(given, out), whole_mesh(run, wanted), out / "page",
