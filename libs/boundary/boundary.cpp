@@ -43,11 +43,11 @@ std::vector<Boundary::Polygon> outline_of_targets(const Options& options, const 
   for (const Eigen::Vector3d& corner : places_of_targets(file, options.targets))
     ring.emplace_back((axes.axes * corner + axes.offset).head<2>());
   const std::vector<geometry::Ring> rings{ring};
-  if (const auto crossings = geometry::crossings_of(rings); !crossings.empty())
+  if (const auto crossing = geometry::crossing_of(rings))
     fail(
         "{} {}: the outline crosses itself at ({:.3f}, {:.3f}): name the targets in their order "
         "around the area",
-        setting("boundary_targets"), joined(options.targets), crossings[0].x(), crossings[0].y());
+        setting("boundary_targets"), joined(options.targets), crossing->x(), crossing->y());
   return {rings};
 }
 
