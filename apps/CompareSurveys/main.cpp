@@ -121,14 +121,6 @@ bool has_system(const Settings& settings, const LocalFrame& frame) {
   return !frame.is_world() || settings.epsg > 0;
 }
 
-// Takes the direction of the heights and the reference system of the map of --boundary-map.
-void take_boundary_map(Settings& settings, std::string& crs) {
-  if (settings.boundary.map.empty()) return;
-  const boundary::MapPlace place = boundary::place_of_map(settings.boundary.map);
-  settings.up = place.axes.axes.row(2).transpose();
-  crs = place.crs;
-}
-
 // The test of the places to compare.
 std::function<bool(const Eigen::Vector2d&)> inside_of(const Settings& settings,
                                                       const std::string& crs,
@@ -329,7 +321,7 @@ int run(int argc, char** argv) {
   compare::ChangeFacts facts{settings.before.filename().string(),
                              settings.after.filename().string()};
   if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg);
-  take_boundary_map(settings, facts.crs);
+  boundary::take_map(settings.boundary, settings.up, facts.crs);
   const OutputLock lock = lock_output(change_files(settings).difference);
   const std::optional<ByTargets> by_targets = register_by_targets(settings);
   if (settings.align == Align::automatic) settings.compare.align = !by_targets;

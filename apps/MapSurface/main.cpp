@@ -178,14 +178,6 @@ void warn_of_local_coordinates(const Settings& settings, const LocalFrame& frame
         settings.epsg, settings.survey.files.scene.string());
 }
 
-// Takes the direction of the heights and the reference system of the map of --boundary-map.
-void take_boundary_map(Settings& settings, std::string& crs) {
-  if (settings.boundary.map.empty()) return;
-  const boundary::MapPlace place = boundary::place_of_map(settings.boundary.map);
-  settings.up = place.axes.axes.row(2).transpose();
-  crs = place.crs;
-}
-
 // Heights are along z if the coordinates of the scene are those of a reference system: if the scene
 // has an offset, or if the user names the system.
 PlacedMap place_map(const Settings& settings, const Mesh& mesh, const survey::Survey& survey,
@@ -349,7 +341,7 @@ int run(int argc, char** argv) {
   Settings settings = options.settings;
   const Context context = program_context(options.parsed);
   std::string crs = settings.epsg > 0 ? map::crs_of_epsg(settings.epsg) : "";
-  take_boundary_map(settings, crs);
+  boundary::take_map(settings.boundary, settings.up, crs);
   const OutputLock lock = lock_output(map_files(settings).heights);
   survey::Survey survey = survey::open_scene(settings.survey, context);
   TexturedMesh mesh = read_mesh(settings, survey.frame, context);

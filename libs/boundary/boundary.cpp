@@ -9,6 +9,7 @@
 #include "boundary/target_ring.h"
 #include "control/target_places.h"
 #include "map/areas.h"
+#include "map/map_place.h"
 
 namespace axial::boundary {
 namespace {
@@ -91,15 +92,16 @@ Boundary read_boundary(const Options& options, const map::WorldAxes& axes, const
 }
 
 void check_files(const Options& options, const fs::path& mesh) {
-  const std::string crs = options.map.empty() ? "" : place_of_map(options.map).crs;
+  const std::string crs = options.map.empty() ? "" : map::place_of_map(options.map).crs;
   if (!options.file.empty()) map::read_areas(options.file, crs);
   if (!options.targets.empty()) places_of_targets(file_of_places(options, mesh), options.targets);
 }
 
-MapPlace place_of_map(const fs::path& file) {
-  const map::StatedPlace stated = map::stated_place(file);
-  if (!stated.axes) fail_in(file, "does not state its axes: is it a map of MapSurface?");
-  return {*stated.axes, stated.crs};
+void take_map(const Options& options, std::optional<Eigen::Vector3d>& up, std::string& crs) {
+  if (options.map.empty()) return;
+  const map::MapPlace place = map::place_of_map(options.map);
+  up = place.axes.axes.row(2).transpose();
+  crs = place.crs;
 }
 
 }  // namespace axial::boundary

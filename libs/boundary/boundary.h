@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,12 +63,9 @@ Boundary read_boundary(const Options& options, const map::WorldAxes& axes, const
 // axes. Errors as for read_boundary().
 void check_files(const Options& options, const std::filesystem::path& mesh);
 
-// The axes and the coordinate reference system (as WKT) of the map `file`. Error that names the
-// file if it states no axes.
-struct MapPlace {
-  map::WorldAxes axes;
-  std::string crs;
-};
-MapPlace place_of_map(const std::filesystem::path& file);
+// For programs that make a map: takes the direction of the heights [world] and the coordinate
+// reference system (WKT) of Options::map, if it is given. Errors of map::place_of_map() are passed
+// on.
+void take_map(const Options& options, std::optional<Eigen::Vector3d>& up, std::string& crs);
 
 }  // namespace axial::boundary

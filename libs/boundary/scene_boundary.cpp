@@ -7,8 +7,8 @@
 
 namespace axial::boundary {
 
-MapPlace place_of_scene(const Options& options, const Mesh& mesh, const SceneFacts& scene) {
-  if (!options.map.empty()) return place_of_map(options.map);
+map::MapPlace place_of_scene(const Options& options, const Mesh& mesh, const SceneFacts& scene) {
+  if (!options.map.empty()) return map::place_of_map(options.map);
   const Eigen::Vector3d up =
       scene.frame.is_world()
           ? naming(scene.mesh, [&] { return map::fitted_up(mesh, scene.centres); })
@@ -18,7 +18,7 @@ MapPlace place_of_scene(const Options& options, const Mesh& mesh, const SceneFac
 
 std::size_t mark_outside(const Options& options, const SceneFacts& scene, Mesh& mesh,
                          const Context& context) {
-  const MapPlace place = place_of_scene(options, mesh, scene);
+  const map::MapPlace place = place_of_scene(options, mesh, scene);
   const Boundary boundary = read_boundary(options, place.axes, place.crs, scene.frame, scene.mesh);
   context.memory().require(bytes_to_mark(mesh), "cutting the mesh at the boundary");
   const std::size_t outside = mark_outside(mesh, boundary);

@@ -9,6 +9,7 @@
 
 #include "base/context.h"
 #include "boundary/boundary.h"
+#include "map/map_place.h"
 #include "scene/mesh.h"
 
 namespace axial::boundary {
@@ -23,7 +24,7 @@ struct SceneFacts {
 // The axes and the reference system in which the boundary is meant: those of Options::map. Without
 // such a map they are those of a map of MapSurface with its defaults: heights are along z if the
 // frame is not the world, and otherwise along map::fitted_up() of the mesh.
-MapPlace place_of_scene(const Options& options, const Mesh& mesh, const SceneFacts& scene);
+map::MapPlace place_of_scene(const Options& options, const Mesh& mesh, const SceneFacts& scene);
 
 // Reads the boundary and marks the faces of the mesh outside of it (cut_mesh.h). Tells how many
 // faces are inside. Returns the number of faces outside. Errors of read_boundary() and

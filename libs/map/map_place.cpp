@@ -26,18 +26,18 @@ void take_place(const ParsedOptions& parsed, PlaceOptions& options) {
     if (given(parsed, option)) fail("--{} contradicts --map, which states it", option);
 }
 
+MapPlace place_of_map(const std::filesystem::path& map) {
+  const StatedPlace stated = stated_place(map);
+  if (!stated.axes) fail_in(map, "does not state its axes: is it a map of MapSurface?");
+  return {*stated.axes, stated.crs};
+}
+
 MapPlace place_of(const PlaceOptions& options) {
+  if (!options.map.empty()) return place_of_map(options.map);
   MapPlace place;
-  if (options.map.empty()) {
-    if (options.epsg > 0) place.crs = crs_of_epsg(options.epsg);
-    const Eigen::Vector3d up = options.up.value_or(Eigen::Vector3d::UnitZ());
-    place.axes.axes = frame_with_up(up, {}).axes;
-    return place;
-  }
-  const StatedPlace stated = stated_place(options.map);
-  if (!stated.axes) fail_in(options.map, "does not state its axes: is it a map of MapSurface?");
-  place.axes = *stated.axes;
-  place.crs = stated.crs;
+  if (options.epsg > 0) place.crs = crs_of_epsg(options.epsg);
+  const Eigen::Vector3d up = options.up.value_or(Eigen::Vector3d::UnitZ());
+  place.axes.axes = frame_with_up(up, {}).axes;
   return place;
 }
 

@@ -36,8 +36,10 @@ struct MapPlace {
   std::string crs;
 };
 
-// Error that names the map if it cannot be read or does not state its axes, and Error of
-// crs_of_epsg().
+// Error that names the map if it cannot be read or does not state its axes.
+MapPlace place_of_map(const std::filesystem::path& map);
+
+// Errors of place_of_map() and crs_of_epsg() are passed on.
 MapPlace place_of(const PlaceOptions& options);
 
 }  // namespace axial::map
