@@ -291,6 +291,19 @@ class WithStandIns(StandIns):
         self.succeeds(*targets, "--map=--boundary-targets 4,5,6")
         self.assertEqual(self.command_of("MapSurface").count("--boundary-targets"), 1)
 
+    def test_a_boundary_for_one_program_replaces_that_of_all(self):
+        def map_command(**given):
+            return next(" ".join(step.command) for step in reconstruct_steps.steps(
+                options_of(until="page", **given), self.folder / "out") if step.name == "map")
+        by_targets, by_file = map_command(boundary_targets="1,2,3"), map_command(boundary="all.geojson")
+        self.assertIn("--target-places", by_targets)
+        own = map_command(boundary_targets="1,2,3", map="--boundary own.geojson")
+        self.assertEqual(own, by_file.replace("all.geojson", "own.geojson"))
+        own = map_command(boundary="all.geojson", map="--boundary-targets 4,5,6")
+        self.assertTrue(own.endswith("--boundary-targets 4,5,6") and "all.geojson" not in own, own)
+        # The map states the system.
+        self.assertNotIn("--epsg", map_command(epsg=32617, boundary="all.geojson", map="--boundary-map a.dem.tif"))
+
     def test_a_comparison_is_cut_by_targets_of_the_earlier_survey(self):
         self.write("before/scene_dense_mesh.ply", "")
         plot, targets = self.write("plot.geojson", "{}"), self.write("targets.json", "{}")
@@ -312,6 +325,7 @@ class WithStandIns(StandIns):
                  "--boundary-targets", "1,2,3"),
                 ("--boundary-targets 1,2,3: needs --targets", "--boundary-targets", "1,2,3"),
                 ("--boundary-targets 1,2,: must be three or more labels", *targets, "--boundary-targets", "1,2,"),
+                ("--boundary-targets 1,,2,3: has an empty label", *targets, "--boundary-targets", "1,,2,3"),
                 (f"--boundary {self.folder}/plot.geojson: is for the maps, which this run does not make",
                  "--boundary", "plot.geojson", "--without", "map")):
             self.assertIn(told, self.refused(*options))

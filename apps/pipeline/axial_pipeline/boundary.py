@@ -7,8 +7,11 @@ import pathlib
 
 from . import control, files
 from .failure import Failure
+from .option_files import find_option
 
 LEAST = 3  # corners
+# The options of MapSurface and CompareSurveys.
+OF_PROGRAMS = ("--boundary", "--boundary-targets", "--target-places", "--boundary-map")
 
 
 def add_options(parser):
@@ -27,6 +30,8 @@ def check(given):
         raise Failure(f"--boundary-targets {labels}: needs --targets")
     if labels and len([label for label in labels.split(",") if label.strip()]) < LEAST:
         raise Failure(f"--boundary-targets {labels}: must be three or more labels, separated by commas")
+    if labels and not all(label.strip() for label in labels.split(",")):
+        raise Failure(f"--boundary-targets {labels}: has an empty label")
     if given.boundary:
         given.boundary = files.existing("--boundary", given.boundary, is_file=True)
 
@@ -46,6 +51,22 @@ def options(given, out):
     if not given.boundary_targets:
         return []
     return [("--boundary-targets", given.boundary_targets), ("--target-places", places_of(given, out))]
+
+
+def not_given_again(options, words):
+    """The words of the options, each a tuple of name and value, that the `words` of the user do not replace. A boundary
+    of the user replaces one of the other kind, too."""
+    again = {find_option(word, OF_PROGRAMS) for word in words}
+    if "--boundary" in again:
+        again |= {"--boundary-targets", "--target-places"}
+    if "--boundary-targets" in again:
+        again.add("--boundary")
+    return [word for option in options if option[0] not in again for word in option]
+
+
+def states_system(words):
+    """Whether the `words` of the user name a map that states the coordinate reference system."""
+    return any(find_option(word, OF_PROGRAMS) == "--boundary-map" for word in words)
 
 
 def places_of(given, out):

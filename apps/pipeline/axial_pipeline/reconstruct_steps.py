@@ -78,7 +78,9 @@ class Run:
         return ("--tiles", self.given.tiles) if self.given.tiles > 1 else ()
 
     def system(self, words=()):
-        """The option of a program for the coordinate reference system, unless it is among the `words` of the user."""
+        """The option of a program for the coordinate reference system, unless the `words` of the user state it."""
+        if boundary.states_system(words):
+            return []
         return not_given_again([("--epsg", self.given.epsg)] if self.given.epsg else [], words)
 
     def step(self, name, command, makes, reads=(), also=(), **more):
@@ -317,7 +319,7 @@ def map_step(run, name, mesh, output, *options):
         words = without_options(words, ("--colors",))
     command = run.programs.map_surface(run.scene, mesh, output, *REFRACTIVE,
                                        *mask_words(run.words("texture"), words), *options, *run.system(words),
-                                       *not_given_again(boundary.options(run.given, run.out), words), *words)
+                                       *boundary.not_given_again(boundary.options(run.given, run.out), words), *words)
     made = [output.with_name(f"{output.name}.{kind}.tif") for kind in ("dem", "ortho", "views")]
     also = [*read_by(command, run.own("texture")), *(read_by(command, run.own("map")) if name != "map" else [])]
     return run.step(name, command, Files(*made), also=[*also, *boundary.files_of(run.given, run.out)],
@@ -346,7 +348,7 @@ def survey_steps(run, wanted):
         limits = boundary.options_of_comparison(given, out, of_earlier)
         command = programs.compare_surveys(given.earlier, best_mesh(given, out), out / "scene",
                                            *words_about_surveys(words, registration, earlier, run.scene),
-                                           *run.system(words), *not_given_again(limits, words), *words)
+                                           *run.system(words), *boundary.not_given_again(limits, words), *words)
         read = dict.fromkeys([*places[:1], *([of_earlier] if limits else []), *boundary.files_of(given, out)])
         yield run.step("compare", command, out / "scene.change.json", reads=[given.earlier, earlier, *read],
                        anew=run.made_before("compare"))
