@@ -121,16 +121,21 @@ bool has_system(const Settings& settings, const LocalFrame& frame) {
   return !frame.is_world() || settings.epsg > 0;
 }
 
+// The boundary, whose targets are those of the earlier survey.
+boundary::Options boundary_of(const Settings& settings) {
+  boundary::Options options = settings.boundary;
+  if (!options.targets.empty() && options.places.empty()) options.places = settings.targets_before;
+  return options;
+}
+
 // The test of the places to compare.
 std::function<bool(const Eigen::Vector2d&)> inside_of(const Settings& settings,
                                                       const std::string& crs,
                                                       const map::MapFrame& map_frame,
                                                       const LocalFrame& frame) {
   if (!settings.boundary.is_given()) return {};
-  boundary::Options options = settings.boundary;
-  if (options.places.empty()) options.places = settings.targets_before;
   const auto boundary = std::make_shared<const boundary::Boundary>(boundary::read_boundary(
-      options, map::world_axes(map_frame, frame), crs, frame, settings.before));
+      boundary_of(settings), map::world_axes(map_frame, frame), crs, frame, settings.before));
   return [boundary](const Eigen::Vector2d& place) { return boundary->contains_on_map(place); };
 }
 
@@ -324,6 +329,7 @@ int run(int argc, char** argv) {
   boundary::take_map(settings.boundary, settings.up, facts.crs);
   const OutputLock lock = lock_output(change_files(settings).difference);
   const std::optional<ByTargets> by_targets = register_by_targets(settings);
+  boundary::check_files(boundary_of(settings), settings.before, facts.crs);
   if (settings.align == Align::automatic) settings.compare.align = !by_targets;
   const Surveys surveys = read_surveys(settings, by_targets, context);
   facts.mesh_frame = surveys.frame;

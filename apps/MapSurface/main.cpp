@@ -344,6 +344,7 @@ int run(int argc, char** argv) {
   boundary::take_map(settings.boundary, settings.up, crs);
   const OutputLock lock = lock_output(map_files(settings).heights);
   survey::Survey survey = survey::open_scene(settings.survey, context);
+  boundary::check_files(settings.boundary, settings.mesh, crs);
   TexturedMesh mesh = read_mesh(settings, survey.frame, context);
   warn_of_local_coordinates(settings, survey.frame);
   if (!mesh.textures.empty()) leave_out_colors(options, survey.options);

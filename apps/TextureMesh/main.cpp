@@ -172,6 +172,7 @@ int run(int argc, char** argv) {
   const Context context = program_context(options.parsed);
   const OutputLock lock = lock_output(settings.output);
   survey::Survey survey = survey::open_scene(settings.survey, context);
+  boundary::check_files(settings.boundary, settings.mesh);
   Mesh mesh = read_mesh(settings, survey.frame, context);
   naming(settings.mesh, [&] { check_mesh(mesh); });
   belong::check_surface(survey.scene, belong::shape_of(mesh), {settings.mesh, survey.file()},

@@ -91,9 +91,9 @@ Boundary read_boundary(const Options& options, const map::WorldAxes& axes, const
                   mesh_frame, setting("boundary_targets") + " " + joined(options.targets));
 }
 
-void check_files(const Options& options, const fs::path& mesh) {
-  const std::string crs = options.map.empty() ? "" : map::place_of_map(options.map).crs;
-  if (!options.file.empty()) map::read_areas(options.file, crs);
+void check_files(const Options& options, const fs::path& mesh, const std::string& crs) {
+  const std::string of_map = options.map.empty() ? crs : map::place_of_map(options.map).crs;
+  if (!options.file.empty()) map::read_areas(options.file, of_map);
   if (!options.targets.empty()) places_of_targets(file_of_places(options, mesh), options.targets);
 }
 

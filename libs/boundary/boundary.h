@@ -60,8 +60,10 @@ Boundary read_boundary(const Options& options, const map::WorldAxes& axes, const
                        const LocalFrame& mesh_frame, const std::filesystem::path& mesh);
 
 // Reads the files of `options` to find faults before long work, as far as they do not depend on the
-// axes. Errors as for read_boundary().
-void check_files(const Options& options, const std::filesystem::path& mesh);
+// axes. `crs`: as for read_boundary(), if Options::map does not state it. Errors as for
+// read_boundary().
+void check_files(const Options& options, const std::filesystem::path& mesh,
+                 const std::string& crs = {});
 
 // For programs that make a map: takes the direction of the heights [world] and the coordinate
 // reference system (WKT) of Options::map, if it is given. Errors of map::place_of_map() are passed
