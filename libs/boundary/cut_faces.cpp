@@ -78,8 +78,8 @@ class FaceCutter {
     const std::vector<std::uint32_t> near = sides_.near(box_of(pieces));
     constexpr std::size_t kMost = 10'000;
     if (near.size() > kMost)
-      fail("{} has {} sides above one face of the mesh: simplify it", boundary_.name(),
-           near.size());
+      fail_in(boundary_.name(), "has {} sides above one face of the mesh: simplify it",
+              near.size());
     for (const std::uint32_t side : near) split_at_corner(pieces, side, result);
     for (const std::uint32_t side : near) split_along(pieces, side, result);
     if (pieces.faces.size() == 1) {

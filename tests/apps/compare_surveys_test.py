@@ -205,7 +205,6 @@ class Outputs(CompareTest):
         same_volumes()
 
 
-
 class InsideOfABoundary(CompareTest):
     """Of the two blocks, only the one that came is inside."""
     PLOT = ((0.9, 0.5), (1.5, 0.45), (1.45, 1.1), (0.95, 1.05))
