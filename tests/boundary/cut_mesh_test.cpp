@@ -264,5 +264,14 @@ TEST(CutMesh, ABoundaryBesideTheSurfaceIsAnErrorThatStatesBothExtents) {
                         "8.00, but the surface has x from 0.00 to 1.00 and y from 0.00 to 1.00"));
 }
 
+TEST(CutMesh, TooManySidesAboveAFaceAreAnErrorOfTheBoundary) {
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.faces = {{0, 1, 2}};
+  const Boundary circle = boundary_of({{star({0.3, 0.3}, 0.1, 0.1, 6000)}});
+  EXPECT_THAT(test::error_of([&] { mark_outside(mesh, circle); }),
+              HasSubstr("plot: has 12000 sides above one face of the mesh"));
+}
+
 }  // namespace
 }  // namespace axial::boundary
