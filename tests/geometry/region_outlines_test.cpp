@@ -13,7 +13,7 @@ namespace {
 const Eigen::Vector2d kCentre(130.2, -40.7);
 constexpr double kStep = 0.5;
 
-double area_of(const Ring& ring) {
+double signed_area(const Ring& ring) {
   double twice = 0;
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const Eigen::Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
@@ -55,8 +55,8 @@ TEST(RegionOutlines, OfARingWithAnIslandInItsHole) {
   expect_circle(ring[0], 10.3);
   expect_circle(ring[1], 6);
   expect_circle(island[0], 2.1);
-  EXPECT_NEAR(area_of(ring[0]), std::numbers::pi * 10.3 * 10.3, 3);
-  EXPECT_NEAR(area_of(ring[1]), -std::numbers::pi * 36, 2);
+  EXPECT_NEAR(signed_area(ring[0]), std::numbers::pi * 10.3 * 10.3, 3);
+  EXPECT_NEAR(signed_area(ring[1]), -std::numbers::pi * 36, 2);
 }
 
 TEST(RegionOutlines, AreFoundBeyondAGridThatIsTooSmall) {
@@ -70,7 +70,7 @@ TEST(RegionOutlines, StopAtTheMostSamples) {
   const auto parts = region_outlines(
       grid_around(1), [](const Eigen::Vector2d&) { return true; }, 400);
   ASSERT_EQ(parts.size(), 1U);
-  EXPECT_LT(area_of(parts[0][0]), 400 * kStep * kStep);
+  EXPECT_LT(signed_area(parts[0][0]), 400 * kStep * kStep);
 }
 
 TEST(RegionOutlines, OfSquaresThatTouchAtACornerAreApart) {
@@ -81,7 +81,7 @@ TEST(RegionOutlines, OfSquaresThatTouchAtACornerAreApart) {
   ASSERT_EQ(parts.size(), 2U);
   for (const auto& part : parts) {
     ASSERT_EQ(part.size(), 1U);
-    EXPECT_GT(area_of(part[0]), 3.5 * 3.5);
+    EXPECT_GT(signed_area(part[0]), 3.5 * 3.5);
   }
 }
 

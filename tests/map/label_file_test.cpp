@@ -37,13 +37,13 @@ class LabelFile : public axial::test::FolderTest {
   }
 };
 
-const char* const kSquare = "[[[0,0],[2,0],[2,2],[0,2],[0,0]]]";
+const char* const kTwoByTwo = "[[[0,0],[2,0],[2,2],[0,2],[0,0]]]";
 
 TEST_F(LabelFile, HasPolygonsPointsAndClasses) {
-  const auto file =
-      write(feature(R"("name": "p1", "Class": "coral", "taxon": "Acropora")", "Polygon", kSquare) +
-            "," + feature(R"("Species": "alga", "label": "l")", "Point", "[3, 4, 5]") + "," +
-            feature("", "MultiPoint", "[[1, 2], [3, 4]]"));
+  const auto file = write(
+      feature(R"("name": "p1", "Class": "coral", "taxon": "Acropora")", "Polygon", kTwoByTwo) +
+      "," + feature(R"("Species": "alga", "label": "l")", "Point", "[3, 4, 5]") + "," +
+      feature("", "MultiPoint", "[[1, 2], [3, 4]]"));
   const auto labels = read_labels(file, "", "");
   ASSERT_EQ(labels.size(), 3U);
   EXPECT_EQ(labels[0].name, "p1");
