@@ -124,7 +124,7 @@ class ToMap(LabelsTest):
                 self.expect_plots()
 
     def expect_plots(self):
-        half = 0.5 * DISTANCE / FOCAL  # corners are cut by half a pixel
+        half = 0.5 * DISTANCE / FOCAL  # sides are found up to rounded pixels, twice
         polygons = [one for one in self.features() if one["geometry"]["type"] == "MultiPolygon"]
         self.assertEqual({one["properties"]["photograph"] for one in polygons}, set(names()))
         for one in polygons:
