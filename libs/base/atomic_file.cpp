@@ -357,8 +357,11 @@ void link_or_copy(const std::filesystem::path& from, const std::filesystem::path
   make_folder(to.parent_path());
   std::error_code error;
   std::filesystem::create_hard_link(from, to, error);
-  if (error) std::filesystem::copy_file(from, to, error);
-  if (error) fail_in(to, "cannot be written: {}", error.message());
+  if (!error) return;
+  if (error == std::errc::file_exists) fail_in(to, "cannot be written: {}", error.message());
+  write_atomically(to, [&](const std::filesystem::path& temporary) {
+    std::filesystem::copy_file(from, temporary);
+  });
 }
 
 std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {

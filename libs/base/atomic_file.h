@@ -96,8 +96,8 @@ void require_writable_folder(const std::filesystem::path& folder);
 void make_folder(const std::filesystem::path& folder);
 
 // Makes the file `to`, which must not exist, another name of the file `from`: a hard link, or where
-// the disk has none a copy. Makes the folder of `to` if it is missing. Throws an Error that names
-// `to` if it cannot be written.
+// the disk has none a copy, which is complete or absent as by write_atomically(). Makes the folder
+// of `to` if it is missing. Throws an Error that names `to` if it cannot be written.
 void link_or_copy(const std::filesystem::path& from, const std::filesystem::path& to);
 
 // Returns the content of the whole file, byte by byte. Throws an Error that names `path` if it is
