@@ -52,6 +52,10 @@ TEST(LasHeader, StatesFormatAndLengths) {
   EXPECT_EQ(at<std::uint16_t>(bytes, 105), 36 + 3 * 4 + 2 + 2 * 4);
   EXPECT_EQ(bytes.substr(377, 16), std::string("LASF_Projection") + '\0');
   EXPECT_EQ(bytes.substr(375 + 54, 9), std::string("PROJCS[]") + '\0');
+  for (std::size_t extra = bytes.size() - 6 * 192; extra < bytes.size(); extra += 192) {
+    EXPECT_EQ(bytes[extra + 4 + 31], '\0');  // name and description end with a zero
+    EXPECT_EQ(bytes[extra + 160 + 31], '\0');
+  }
 }
 
 TEST(LasHeader, LeavesOutWhatACloudLacks) {
@@ -93,6 +97,36 @@ TEST(LasGrid, IsAsFineAsTheSizeAllows) {
   EXPECT_EQ(step(2147484), 0);
   EXPECT_EQ(step(1e308), 0);
   EXPECT_EQ(step(std::numeric_limits<double>::infinity()), 0);
+}
+
+TEST(LasGrid, IsForFiniteBoxes) {
+  const Eigen::Vector3d low(-1, -1, -1), high(1, 1, 1);
+  ASSERT_TRUE(las_grid(low, high));
+  for (Eigen::Index k = 0; k < 3; ++k)
+    for (const double value :
+         {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+      Eigen::Vector3d low_there = low, high_there = high;
+      low_there(k) = -value, high_there(k) = value;
+      EXPECT_FALSE(las_grid(low_there, high)) << k << ' ' << value;
+      EXPECT_FALSE(las_grid(low, high_there)) << k << ' ' << value;
+      EXPECT_FALSE(las_grid(low_there, high_there)) << k << ' ' << value;
+    }
+}
+
+TEST(LasGrid, TellsWhichPositionsFit) {
+  const LasGrid grid{Eigen::Vector3d(10, 20, 30), 1e-6};
+  EXPECT_TRUE(grid.holds({10, 20, 30}));
+  for (Eigen::Index k = 0; k < 3; ++k)
+    for (const double sign : {-1.0, 1.0}) {
+      Eigen::Vector3d x = grid.offset;
+      x(k) += sign * 2147;  // 2^31 steps are 2147.48
+      EXPECT_TRUE(grid.holds(x)) << x.transpose();
+      x(k) += sign;
+      EXPECT_FALSE(grid.holds(x)) << x.transpose();
+      x(k) = sign * std::numeric_limits<double>::infinity();
+      EXPECT_FALSE(grid.holds(x)) << x.transpose();
+    }
+  EXPECT_FALSE(grid.holds({10, std::numeric_limits<double>::quiet_NaN(), 30}));
 }
 
 class LasTest : public test::FolderTest {
@@ -231,6 +265,18 @@ TEST_F(LasTest, RefusesWrongInputAndKeepsAnOlderFile) {
               HasSubstr("vertex"));
   EXPECT_EQ(las(), "older");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
+}
+
+// As for a cloud that another program changes between its two passes.
+TEST_F(LasTest, RefusesAPointOutsideOfTheGrid) {
+  test::put(las_, "older");
+  const std::string error = test::error_naming(las_, [&] {
+    LasWriter writer(las_, {}, {Eigen::Vector3d(10, 20, 30), 1e-6}, "");
+    writer.add({Eigen::Vector3d(10, 20, 31)});
+    writer.add({Eigen::Vector3d(10, 5000, 30)});
+  });
+  EXPECT_THAT(error, HasSubstr("has no room for the point 10 5000 30"));
+  EXPECT_EQ(las(), "older");
 }
 
 TEST_F(LasTest, RefusesAnOutputThatCannotBeWritten) {

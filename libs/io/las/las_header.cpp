@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "private/las/las_header.h"
 
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <string_view>
@@ -11,6 +12,7 @@
 namespace axial::io {
 namespace {
 
+constexpr double kMostSteps = std::numeric_limits<std::int32_t>::max();
 constexpr std::uint16_t kHeaderBytes = 375, kExtraBytes = 192;
 constexpr std::uint8_t kFormatWithoutColors = 6, kFormatWithColors = 7;
 constexpr std::uint16_t kPointBytes = 30, kColorBytes = 6;
@@ -38,13 +40,15 @@ std::vector<Extra> extras_of(const LasLayout& layout) {
   if (layout.views) extras.push_back({"Views", "number of photographs", ExtraType::uint16});
   if (!layout.errors) return extras;
   extras.push_back({"Error", "expected error, 1 sigma [m]", ExtraType::float32, true});
-  extras.push_back({"Confidence", "probability: error below 3 sigma", ExtraType::float32, true});
+  extras.push_back({"Confidence", "probability of error < 3 sigma", ExtraType::float32, true});
   return extras;
 }
 
-// A text in a field of `bytes` bytes, filled with zeros.
+// A text in a field of `bytes` bytes, filled with zeros. One zero at least ends the text, because
+// not all readers stop at the end of a field.
 void write_text(ByteWriter& out, std::string_view text, std::size_t bytes) {
-  std::string field(text.substr(0, bytes));
+  assert(text.size() < bytes);
+  std::string field(text);
   field.resize(bytes, '\0');
   out.text(field);
 }
@@ -123,6 +127,11 @@ void write_counts(ByteWriter& out, std::uint64_t points) {
 
 }  // namespace
 
+bool LasGrid::holds(const Eigen::Vector3d& x) const {
+  // Rounding moves a value by half a step.
+  return x.allFinite() && ((x - offset) / scale).cwiseAbs().maxCoeff() + 1 <= kMostSteps;
+}
+
 std::array<std::int32_t, 3> LasGrid::stored(const Eigen::Vector3d& x) const {
   const Eigen::Vector3d steps = (x - offset) / scale;
   return {static_cast<std::int32_t>(std::llround(steps.x())),
@@ -135,12 +144,10 @@ Eigen::Vector3d LasGrid::world(const std::array<std::int32_t, 3>& stored) const 
 }
 
 std::optional<LasGrid> las_grid(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
-  constexpr double kMost = std::numeric_limits<std::int32_t>::max();
+  if (!low.allFinite() || !high.allFinite()) return {};
   const Eigen::Vector3d offset = (low / 2 + high / 2).array().round();
-  for (const double scale : {1e-6, 1e-5, 1e-4, 1e-3}) {
-    const double most = ((high - offset).cwiseMax(offset - low) / scale).maxCoeff();
-    if (most + 1 <= kMost) return LasGrid{offset, scale};
-  }
+  for (const double scale : {1e-6, 1e-5, 1e-4, 1e-3})
+    if (const LasGrid grid{offset, scale}; grid.holds(low) && grid.holds(high)) return grid;
   return {};
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <span>
 
+#include "base/error.h"
+
 namespace axial::io {
 
 LasWriter::LasWriter(const std::filesystem::path& path, const LasLayout& layout,
@@ -15,6 +17,9 @@ LasWriter::LasWriter(const std::filesystem::path& path, const LasLayout& layout,
 void LasWriter::add(const LasPoint& point) {
   constexpr std::size_t kBuffer = std::size_t{1} << 20;
   constexpr std::uint8_t kFirstOfOneReturn = 0x11;
+  if (!header_.grid.holds(point.position))
+    fail_in(stream_.name(), "has no room for the point {} {} {}: did its cloud change meanwhile?",
+            point.position.x(), point.position.y(), point.position.z());
   const std::array<std::int32_t, 3> stored = header_.grid.stored(point.position);
   for (std::size_t k = 0; k < 3; ++k) {
     low_[k] = header_.points == 0 ? stored[k] : std::min(low_[k], stored[k]);
@@ -48,7 +53,7 @@ void LasWriter::write_extras(const LasPoint& point) {
 
 void LasWriter::flush() {
   stream_.write(bytes_.bytes());
-  bytes_ = {};
+  bytes_.clear();
 }
 
 LasHeader LasWriter::header() const {

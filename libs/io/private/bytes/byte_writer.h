@@ -23,6 +23,9 @@ class ByteWriter {
   // Moves the bytes out, so that large contents are not copied.
   std::string take() { return std::move(bytes_); }
 
+  // Removes the bytes, and keeps their room for others.
+  void clear() { bytes_.clear(); }
+
   // Allocates room for `bytes` bytes. More bytes can be written, at the cost of a copy.
   void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
 

@@ -25,6 +25,9 @@ struct LasGrid {
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   double scale = 1e-6;  // the same for x, y and z
 
+  // Whether the integers of `x` have 32 bits. False for a position that is not finite.
+  bool holds(const Eigen::Vector3d& x) const;
+  // Precondition: holds(x).
   std::array<std::int32_t, 3> stored(const Eigen::Vector3d& x) const;
   Eigen::Vector3d world(const std::array<std::int32_t, 3>& stored) const;
 };

@@ -34,7 +34,7 @@ class LasWriter {
   LasWriter(const std::filesystem::path& path, const LasLayout& layout, const LasGrid& grid,
             const std::string& crs);
 
-  // Precondition: the position fits the grid. Error if the file cannot be written.
+  // Error if the position does not fit the grid, and if the file cannot be written.
   void add(const LasPoint& point);
 
   // Writes the number of points and the box of their stored positions into the header, and renames
