@@ -14,9 +14,9 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 5> kKnown{".mvs", ".ply", ".obj", ".glb", ".gltf"};
 
-constexpr std::array<std::string_view, 17> kOtherFormats{
-    ".stl", ".off", ".fbx", ".dae", ".3ds", ".3mf", ".usd", ".usdz", ".wrl",
-    ".x3d", ".las", ".laz", ".e57", ".pcd", ".pts", ".xyz", ".vtk"};
+constexpr std::array<std::string_view, 16> kOtherFormats{
+    ".stl", ".off", ".fbx", ".dae", ".3ds", ".3mf", ".usd", ".usdz",
+    ".wrl", ".x3d", ".laz", ".e57", ".pcd", ".pts", ".xyz", ".vtk"};
 
 }  // namespace
 
@@ -43,6 +43,9 @@ void refuse_control_characters(const fs::path& path, const std::string& option) 
 
 void refuse_other_format(const fs::path& path, const std::string& option) {
   const std::string extension = lower_extension(path);
+  if (extension == ".las")
+    fail("{} {}: a .las file is written by TransformScene -i cloud.ply alone", option,
+         path.string());
   if (std::ranges::find(kOtherFormats, extension) != kOtherFormats.end())
     fail("{} {}: {} files are not written", option, path.string(), extension);
 }

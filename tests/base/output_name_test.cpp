@@ -43,6 +43,10 @@ TEST(OutputName, NamesWithControlCharactersAreRefused) {
 TEST(OutputName, FormatsThatAreNotWrittenAreNamed) {
   EXPECT_THAT(test::error_of([] { refuse_other_format("m.STL", "--output-file"); }),
               HasSubstr("--output-file m.STL: .stl files are not written"));
+  EXPECT_THAT(
+      test::error_of([] { refuse_other_format("c.Las", "--output-file"); }),
+      HasSubstr("--output-file c.Las: a .las file is written by TransformScene -i cloud.ply "
+                "alone"));
   refuse_other_format("scan.v2", "--output-file");
 }
 
