@@ -2,6 +2,7 @@
 #include <cpl_conv.h>
 #include <ogr_srs_api.h>
 
+#include <array>
 #include <cmath>
 
 #include "base/error.h"
@@ -20,10 +21,14 @@ std::string crs_of_epsg(int code) {
       std::abs(OSRGetLinearUnits(system.get(), nullptr) - 1) > 1e-12)
     fail("{} {}: is no projected coordinate reference system with metres as unit", setting("epsg"),
          code);
+  // WKT 1, because GeoTIFF and LAS of many programs do not read WKT 2.
+  const std::array<const char*, 2> options{"FORMAT=WKT1_GDAL", nullptr};
   char* text = nullptr;
-  OSRExportToWkt(system.get(), &text);
-  const std::string wkt = text;
+  const OGRErr result = OSRExportToWktEx(system.get(), &text, options.data());
+  const std::string wkt = text ? text : "";
   CPLFree(text);
+  if (result != OGRERR_NONE || wkt.empty())
+    fail("{} {}: cannot be written as WKT 1, which maps and LAS state", setting("epsg"), code);
   return wkt;
 }
 
