@@ -24,6 +24,7 @@
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
 #include "map/height_error.h"
+#include "map/local_coordinates.h"
 #include "map/pixel_width.h"
 #include "map/stated_kind.h"
 #include "map/up_direction.h"
@@ -166,16 +167,6 @@ double pixel_of(const Settings& settings, const Mesh& mesh, const survey::Survey
   if (settings.pixel > 0) return settings.pixel;
   context.memory().require(map::bytes_of_pixel_width(mesh), "the width of a pixel");
   return map::rounded_width(map::median_pixel_width(mesh, survey::posed_cameras(survey)));
-}
-
-// Warns if the code names a reference system, although the scene lies near the origin of its
-// coordinates, as local coordinates do.
-void warn_of_local_coordinates(const Settings& settings, const LocalFrame& frame) {
-  if (settings.epsg > 0 && frame.is_world())
-    log_warning(
-        "--epsg {}: the coordinates of {} are within 1 km of the origin: are they local "
-        "coordinates? The maps state the system all the same",
-        settings.epsg, settings.survey.files.scene.string());
 }
 
 // Heights are along z if the coordinates of the scene are those of a reference system: if the scene
@@ -346,7 +337,8 @@ int run(int argc, char** argv) {
   survey::Survey survey = survey::open_scene(settings.survey, context);
   boundary::check_files(settings.boundary, settings.mesh, crs);
   TexturedMesh mesh = read_mesh(settings, survey.frame, context);
-  warn_of_local_coordinates(settings, survey.frame);
+  if (survey.frame.is_world())
+    map::warn_of_local_coordinates(settings.epsg, settings.survey.files.scene, context);
   if (!mesh.textures.empty()) leave_out_colors(options, survey.options);
   belong::check_surface(survey.scene, belong::shape_of(mesh.mesh), {settings.mesh, survey.file()},
                         context);

@@ -11,22 +11,13 @@
 #include "base/same_file.h"
 #include "io/cameras/geo_offset.h"
 #include "io/las/cloud_to_las.h"
+#include "io/openmvs/point_source.h"
+#include "map/local_coordinates.h"
 
 namespace axial::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Warns if the code names a reference system, although the cloud lies near the origin of its
-// coordinates, as local coordinates do.
-void warn_of_local_coordinates(const Options& options, const io::LasReport& report) {
-  constexpr double kNear = 1000;
-  if (options.epsg > 0 && ((report.low + report.high) / 2).norm() < kNear)
-    log_warning(
-        "--epsg {}: the coordinates of {} are within 1 km of the origin: are they local "
-        "coordinates? The file states the system all the same",
-        options.epsg, options.input.string());
-}
 
 void tell(const Options& options, const io::LasReport& report) {
   log_info(
@@ -44,10 +35,13 @@ void write_as_las(const Options& options, const Context& context) {
   const OutputLock lock = lock_output(options.output);
   require_writable(options.output);
   const LocalFrame frame = io::read_geo_offset_beside(options.input).value_or(LocalFrame{});
+  if (io::is_without_offset(frame, options.input)) io::tell_lost_offset(options.input, frame);
   const io::LasReport report =
       io::write_cloud_as_las(options.input, options.output, frame, crs, context);
   tell(options, report);
-  warn_of_local_coordinates(options, report);
+  constexpr double kNear = 1000;  // as for the offset of a scene
+  if (((report.low + report.high) / 2).norm() < kNear)
+    map::warn_of_local_coordinates(options.epsg, options.input, context);
 }
 
 }  // namespace axial::apps

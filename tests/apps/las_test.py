@@ -141,7 +141,11 @@ class Clouds(Densified):
         # A program that dropped the offset: the scene's file states it.
         without = read(self.ply).replace(b"comment geo_offset", b"comment some_offset")
         write(self.ply, without)
-        self.assertEqual(self.converted("--epsg", UTM)[0].places, las.places)
+        tells = f"{self.ply}: states no offset; its coordinates count from the scene's offset"
+        self.assertNotIn(tells, said)
+        again, said = self.converted("--epsg", UTM)
+        self.assertEqual(again.places, las.places)
+        self.assertIn(tells, said)
 
 
 class SmallClouds(ProgramTest):
