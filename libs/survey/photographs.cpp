@@ -29,6 +29,11 @@ std::uint64_t bytes_to_convert(const io::ImageHeader& header) {
   return io::bytes_needed(header) + (header.bits > 8 ? 3 * stored : 0);
 }
 
+// Whether the colours and the transparency of a view are in its photograph, in part at least.
+bool is_needed_for_color(const View& view) {
+  return view.colors.empty() || view.header.alpha;
+}
+
 void leave_out(const cv::Mat1b& mask, cv::Mat1b& usable) {
   if (mask.empty()) return;
   if (usable.empty())
@@ -68,7 +73,7 @@ cv::Mat1b working_mask(const View& view, const cv::Mat1b& opaque, int ignored_la
 FullPhotograph read_full_photograph(const Survey& survey, std::size_t view) {
   const View& from = survey.views[view];
   FullPhotograph result;
-  if (from.colors.empty() || from.header.alpha) {
+  if (is_needed_for_color(from)) {
     io::Photograph photograph = io::read_photograph(from.file);
     result.opaque = photograph.opaque;
     if (from.colors.empty()) result.color = io::in_8_bits(photograph.pixels, survey.bit_depth);
@@ -83,8 +88,7 @@ Photographs::Photographs(const Survey& survey)
 
 bool Photographs::needs_photograph(const View& view, Channels channels) const {
   const bool gives_grey = channels != Channels::color && !survey_.options.match_colors;
-  return view.colors.empty() || gives_grey || view.header.alpha ||
-         survey_.options.ignore_black_border;
+  return is_needed_for_color(view) || gives_grey || survey_.options.ignore_black_border;
 }
 
 bool Photographs::needs_colors(const View& view, Channels channels) const {
