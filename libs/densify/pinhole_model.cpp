@@ -31,13 +31,16 @@ PinholePoints::PinholePoints(const Scene& scene, std::span<const std::size_t> im
   std::vector<std::size_t> counts(scene.images.size());
   for (const SparsePoint& point : scene.points)
     for (const SparseView& view : point.views) ++counts[view.image];
-  // Only the lists of `images` have room, and are filled.
-  for (const std::size_t image : images) of_image_[image].reserve(counts[image]);
+  std::vector<bool> is_wanted(scene.images.size(), false);
+  for (const std::size_t image : images) {
+    is_wanted[image] = true;
+    of_image_[image].reserve(counts[image]);
+  }
   for (std::uint32_t p = 0; p < scene.points.size(); ++p)
     for (const SparseView& view : scene.points[p].views) {
       std::vector<Seen>& seen = of_image_[view.image];
       const bool repeated = !seen.empty() && seen.back().point == p;
-      if (seen.capacity() > 0 && !repeated) seen.push_back({p});
+      if (is_wanted[view.image] && !repeated) seen.push_back({p});
     }
 }
 
