@@ -67,7 +67,7 @@ class Photographs {
   void report(const Context& context) const;
 
  private:
-  // Whether read() decodes the photograph itself, and View::colors, for this survey's options.
+  // Whether read() decodes the photograph itself, and View::colors.
   bool needs_photograph(const View& view, Channels channels) const;
   bool needs_colors(const View& view, Channels channels) const;
 
