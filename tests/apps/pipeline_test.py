@@ -234,6 +234,26 @@ class Positions(InFolder):
         found = positions.read(file, names)
         self.assertAlmostEqual(math.dist(*found.values()), 11.1, delta=0.05)
 
+    def test_degrees_become_metres_in_the_zone_that_maps_state(self):
+        names = ["a.jpg", "b.jpg", "c.jpg"]
+        for header, x, y, zone in (("EPSG:4326", -81.5, 24.5, 32617), ("EPSG:4326", 147.5, -18.5, 32755),
+                                   ("EPSG:4326", 5.9999, 60, 32631), ("EPSG:4326", 6.0001, 60, 32632),
+                                   ("label,latitude,longitude,z", 24.5, -81.5, 32617),
+                                   ("EPSG:4326", 179.99, 1, 32660), ("EPSG:4326", -180, 1, 32601)):
+            rows = "".join(f"{name},{x},{y},{-number}\n" for number, name in enumerate(names))
+            file = self.write("degrees.csv", f"{header}\n{rows}")
+            for harmless in (0, zone):
+                positions.check_system(file, names, harmless)
+            for wrong in (zone - 1, zone + 1):
+                with self.assertRaisesRegex(Failure, f"--epsg {wrong}: .*degrees.csv .*give --epsg {zone}, or"):
+                    positions.check_system(file, names, wrong)
+        self.write("degrees.csv", "a,16.5,54.25,-3\nb,16.5,54.2501,-3\nc,16.5001,54.25,-3\n")
+        with self.assertRaisesRegex(Failure, "degrees.csv: no line states .* which --epsg needs"):
+            positions.check_system(file, names, 32633)
+        positions.check_system(file, names, 0)
+        self.write("degrees.csv", "a 534000 3378500 -3\nb 534001 3378500 -3\nc 534000 3378501 -3\n")
+        positions.check_system(file, names, 32617)
+
     def read_as(self, places, reading):
         """The positions that are read of a file without a header, in the order of `places`. Checks what is
         said."""

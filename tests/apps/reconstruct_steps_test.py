@@ -275,7 +275,27 @@ class WithStandIns(StandIns):
         self.assertTrue(own["map"].endswith("--epsg 1") and "32617" not in own["map"], own["map"])
         self.assertIn("neither --control nor --scale-from positions:", self.refused("--epsg", "32617"))
         self.write("known.txt", "0.png 1 2 3\n")
-        self.assertIn("must be from 0 to", self.refused("--epsg", "-1", "--scale-from", "positions:known.txt"))
+        known = ["--scale-from", "positions:known.txt"]
+        self.assertIn("must be from 0 to", self.refused("--epsg", "-1", *known))
+        for until in ("poses", "cloud"):
+            self.assertEqual("--epsg 32617: is for maps, LAS and --control, which this run does not have",
+                             self.refused("--epsg", "32617", *known, "--until", until))
+        self.put_script("TransformScene", "echo \"TransformScene: $5 $6: is wrong\" >&2; exit 1")
+        self.assertEqual("--epsg 32617: is wrong", self.refused("--epsg", "32617", *known))
+
+    def test_control_points_are_transformed_to_the_reference_system(self):
+        command = lambda **changes: " ".join(next(step.command for step in reconstruct_steps.steps(
+            options_of(until="page", targets="targets.json", **changes), self.folder / "out")
+            if step.name == "refine"))
+        self.assertIn("--control gcp.csv --epsg 32617", command(control="gcp.csv", epsg=32617))
+        self.assertNotIn("--epsg", command(control="gcp.csv"))
+        self.assertNotIn("--epsg", command(scale_from="positions:known.txt", epsg=32617))
+        self.write("targets.json", "{}")
+        self.write("gcp.csv", "")
+        given = ["--epsg", "32617", "--targets", "targets.json", "--control", "gcp.csv"]
+        self.succeeds(*given, "--until", "poses")  # the code names the frame of the poses
+        self.assertIn("--refine-poses --epsg 32618: contradicts --epsg 32617",
+                      self.refused(*given, "--refine-poses=--epsg 32618"))
 
     def test_maps_are_cut_at_a_boundary(self):
         plot, out = self.write("plot.geojson", "{}"), self.folder / "out"

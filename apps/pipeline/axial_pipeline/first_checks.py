@@ -57,6 +57,31 @@ def check_cameras(given):
         return lens_behind_port(given, cameras.lens_file(given, out), cameras.housing_file(given, out), out)
 
 
+ONE_POINT = """ply
+format ascii 1.0
+element vertex 1
+property float x
+property float y
+property float z
+end_header
+0 0 0
+"""
+
+
+def check_system(given):
+    """Lets TransformScene read the code of --epsg as the run will: MapSurface and RefinePoses would refuse a wrong
+    one after hours."""
+    if not given.epsg:
+        return
+    with tempfile.TemporaryDirectory(prefix=PREFIX) as folder:
+        cloud = pathlib.Path(folder) / "cloud.ply"
+        cloud.write_text(ONE_POINT)
+        code, said = said_by(Programs(given.programs).write_as_las(cloud, cloud.with_suffix(".las"), "--epsg",
+                                                                   given.epsg))
+        if code != 0:
+            raise Failure(reason_in(said, "TransformScene"))
+
+
 COMMANDS = {"features": ["colmap", "feature_extractor"], "poses": ["colmap", "mapper"]}
 
 

@@ -286,6 +286,21 @@ def metres_of_degrees(positions, latitude_first):
             for name, place in positions.items()}
 
 
+def zone_of(positions, layout, file):
+    """The EPSG code of the UTM zone in which positions in degrees become metres: utm_zone() in
+    libs/io/cameras/degrees.cpp. None for positions in metres. Fails if they can be either."""
+    if layout.degrees is None and can_be_degrees(positions):
+        raise Failure(f"{file}: no line states whether the positions are metres or degrees, which --epsg needs: name "
+                      "the columns in a first line such as label,x (m),y (m),z (m) or "
+                      "label,longitude,latitude,altitude")
+    if not positions or not layout.degrees:
+        return None
+    latitude = 0 if latitude_is_first(positions, layout) else 1
+    mean = [statistics.fmean(place[axis] for place in positions) for axis in (1 - latitude, latitude)]
+    number = math.floor((mean[0] + 180) % 360 / 6) + 1
+    return (32700 if mean[1] < 0 else 32600) + number
+
+
 def way_along(places):
     """The median step between positions that follow each other, and the sum of all steps as a part of the
     extent."""

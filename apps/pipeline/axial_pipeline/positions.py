@@ -96,6 +96,18 @@ def read(file, names, tell=True):
     return position_rows.in_metres(known, layout, file, tell)
 
 
+def check_system(file, names, epsg):
+    """Fails if positions in degrees do not become metres in the system `epsg`, which maps and LAS would state
+    (0: none)."""
+    if not epsg:
+        return
+    found, layout = found_in(file, names)
+    zone = position_rows.zone_of([place for _, _, place, image in found if image and place], layout, file)
+    if zone and zone != epsg:
+        raise Failure(f"--epsg {epsg}: the longitudes and latitudes of {file} become metres in the UTM zone of their "
+                      f"mean: give --epsg {zone}, or positions in metres")
+
+
 def check(file, images, names):
     """Fails if the file names fewer than three of the photographs `names` of the folder `images`. Prints how many
     names are no photographs: RefinePoses would skip a misspelt name like that of a photograph

@@ -66,8 +66,9 @@ def options(script_folder, description, words=None):
                         "without water again, and make the final cloud and mesh from them, for hazy water")
     parser.add_argument("--las", action="store_true", help="write the cloud as LAS 1.4, too (docs/formats.md)")
     parser.add_argument("--epsg", type=int, default=0, metavar="CODE",
-                        help="EPSG code of the coordinate reference system of --control or --scale-from positions:, a "
-                        "projected one in metres, which maps and LAS then state")
+                        help="EPSG code of the coordinate reference system of the scene, a projected one in metres, "
+                        "which maps and LAS then state: --control is transformed to it, and --scale-from positions: "
+                        "must be in it, or be longitudes and latitudes in this UTM zone of WGS 84")
     for name, program in OPTIONS.items():
         parser.add_argument(f"--{name}", default="",
                             help=f"more options for {program}, in one word" +
@@ -188,6 +189,8 @@ def check_results(given):
     if given.las and given.until == "poses":
         raise Failure("--las: is for the cloud, which --until poses does not make")
     boundary.check_results(given, wanted_steps(given))
+    if given.epsg and not given.control and not {"map", "compare", "las"} & {*wanted_steps(given)}:
+        raise Failure(f"--epsg {given.epsg}: is for maps, LAS and --control, which this run does not have")
     if given.compare and not given.earlier:
         raise Failure(f"--compare {given.compare}: is only for --earlier")
     if given.earlier and given.until in ("poses", "cloud"):
@@ -201,13 +204,15 @@ def check_results(given):
 
 def check_las(given):
     """Checks --las and --epsg."""
-    if given.las:
+    if given.las or given.epsg:
         require(given.programs, ["TransformScene"])
     if given.epsg and not (given.control or positions.file_of(given.scale_from)):
         raise Failure(f"--epsg {given.epsg}: is for coordinates of this system, and neither --control nor "
                       "--scale-from positions: gives some")
     if not 0 <= given.epsg <= MOST_EPSG:
         raise Failure(f"--epsg {given.epsg}: must be from 0 to {MOST_EPSG}")
+    if given.epsg and has_option(words_of("refine-poses", given), "--epsg"):
+        raise Failure(f"--refine-poses {given.refine_poses}: contradicts --epsg {given.epsg}")
 
 
 def check_mask_labels(given):
@@ -331,6 +336,7 @@ def check_options(given):
         raise Failure(f"--earlier {given.earlier}: this run replaces this mesh; give another --output")
     colmap.check_installed()
     first_checks.check_refine(given)
+    first_checks.check_system(given)
     lens_lines = first_checks.check_lens_and_housing(given)
     first_checks.check_options_of_programs(given, {name: program for name, program in OPTIONS.items()
                                                    if name != "matches"})
@@ -343,6 +349,7 @@ def check_photographs(given, lens_lines):
     images, file = photographs.check(given.images, one_size=False), positions.file_of(given.scale_from)
     if file is not None:
         positions.check(file, given.images, list(images))
+        positions.check_system(file, list(images), given.epsg)
     given.cameras, left_out = cameras.of(given, images)
     given.lines = [*cameras.lines_about(given.cameras), *left_out]
     for line in given.lines:

@@ -179,7 +179,8 @@ def refine_step(run):
     refine = ["--refine", given.refine] if given.refine else []
     refine_into = lambda folder: run.programs.refine_poses(
         out / "colmap" / "best", cameras.lens_file(given, out), cameras.housing_file(given, out), folder,
-        "--database", out / "database.db", *known, *control.words(given, out), *refine, *run.own("refine"))
+        "--database", out / "database.db", *known, *control.words(given, out), *(run.system() if given.control else []),
+        *refine, *run.own("refine"))
     return run.step("refine", refine_into(run.refined), Report(run.refined / "report.json"),
                     reads=[*run.lens_files, given.housing, *([known_positions] if known_positions else []),
                            *control.files_of(given, out)],
