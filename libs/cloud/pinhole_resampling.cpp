@@ -62,16 +62,27 @@ cv::Point pixel_at(const cv::Vec2f& place, cv::Size photograph) {
   return cv::Rect({}, photograph).contains(pixel) ? pixel : cv::Point(-1, -1);
 }
 
-void resample_rows(const cv::Mat3b& photograph, const cv::Mat1b& opaque, const cv::Mat2f& places,
-                   const cv::Mat1f& surface, cv::Mat3b color, cv::Mat1b label) {
-  cv::remap(photograph, color, places, cv::noArray(), cv::INTER_LANCZOS4, cv::BORDER_REPLICATE);
-  for (int y = 0; y < label.rows; ++y)
-    for (int x = 0; x < label.cols; ++x) {
+// Whether the pixel is in the photograph and not 0 in `marks`. Empty marks: nowhere 0.
+bool is_marked(const cv::Mat1b& marks, cv::Point pixel) {
+  return pixel.x >= 0 && (marks.empty() || marks(pixel) != 0);
+}
+
+void resample_rows(const cv::Mat3b& photograph, const cv::Mat1b& opaque, const cv::Mat1b& mask,
+                   const cv::Mat2f& places, const cv::Mat1f& surface, PinholeImage rows) {
+  cv::remap(photograph, rows.color, places, cv::noArray(), cv::INTER_LANCZOS4,
+            cv::BORDER_REPLICATE);
+  for (int y = 0; y < surface.rows; ++y)
+    for (int x = 0; x < surface.cols; ++x) {
       const cv::Point pixel = pixel_at(places(y, x), photograph.size());
-      const bool there = pixel.x >= 0 && (opaque.empty() || opaque(pixel) != 0);
-      label(y, x) = !there ? kNothing : surface(y, x) != 0 ? kExact : kGuess;
-      if (!there) color(y, x) = {0, 0, 0};
+      const bool there = is_marked(opaque, pixel);
+      rows.label(y, x) = !there ? kNothing : surface(y, x) != 0 ? kExact : kGuess;
+      rows.usable(y, x) = there && is_marked(mask, pixel) ? 255 : 0;
+      if (!there) rows.color(y, x) = {0, 0, 0};
     }
+}
+
+PinholeImage rows_of(const PinholeImage& image, cv::Range rows) {
+  return {image.color.rowRange(rows), image.label.rowRange(rows), image.usable.rowRange(rows)};
 }
 
 }  // namespace
@@ -112,21 +123,23 @@ cv::Mat2f seen_by(const CameraModel& camera, const PinholeView& view,
 
 PinholeImage resampled(const cv::Mat3b& photograph, const cv::Mat1b& opaque,
                        const CameraModel& camera, const PinholeView& view, const cv::Mat1f& surface,
-                       const cv::Mat1f& guess) {
+                       const cv::Mat1f& guess, const cv::Mat1b& mask) {
   const cv::Size size(view.camera.width, view.camera.height);
   if (photograph.size() != cv::Size(camera.width, camera.height) || surface.size() != size ||
-      (!opaque.empty() && opaque.size() != photograph.size()) || guess.empty())
-    fail("the photograph ({}x{}) or its depth map has another size than the camera ({}x{})",
-         photograph.cols, photograph.rows, camera.width, camera.height);
-  PinholeImage image{cv::Mat3b(size), cv::Mat1b(size)};
+      (!opaque.empty() && opaque.size() != photograph.size()) ||
+      (!mask.empty() && mask.size() != photograph.size()) || guess.empty())
+    fail(
+        "the photograph ({}x{}), its mask or its depth map has another size than the camera "
+        "({}x{})",
+        photograph.cols, photograph.rows, camera.width, camera.height);
+  PinholeImage image{cv::Mat3b(size), cv::Mat1b(size), cv::Mat1b(size)};
   constexpr int kRows = 32;
   const auto strips = static_cast<std::size_t>((size.height + kRows - 1) / kRows);
   parallel_for(strips, [&](std::size_t strip) {
     const int first = static_cast<int>(strip) * kRows;
     const cv::Range rows(first, std::min(first + kRows, size.height));
     const cv::Mat2f places = seen_by(camera, view, without_holes(surface, guess, rows), rows);
-    resample_rows(photograph, opaque, places, surface.rowRange(rows), image.color.rowRange(rows),
-                  image.label.rowRange(rows));
+    resample_rows(photograph, opaque, mask, places, surface.rowRange(rows), rows_of(image, rows));
   });
   return image;
 }

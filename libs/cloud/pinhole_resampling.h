@@ -41,10 +41,11 @@ inline constexpr std::uint8_t kNothing = 0;
 inline constexpr std::uint8_t kGuess = 128;  // the depth is interpolated between surfaces
 inline constexpr std::uint8_t kExact = 255;  // the depth is that of a surface
 
-// A photograph resampled to a pinhole. Both images have the size of the pinhole's image.
+// A photograph resampled to a pinhole. All images have the size of the pinhole's image.
 struct PinholeImage {
-  cv::Mat3b color;  // B G R
-  cv::Mat1b label;  // kNothing, kGuess or kExact
+  cv::Mat3b color;   // B G R
+  cv::Mat1b label;   // kNothing, kGuess or kExact
+  cv::Mat1b usable;  // 0 where the label is kNothing or the photograph is masked, otherwise 255
 };
 
 // Resamples a photograph (B G R) to the pinhole. The result has the size of `view.camera`.
@@ -52,10 +53,11 @@ struct PinholeImage {
 // everywhere). `camera`: the photograph's camera at the photograph's resolution. `surface`: the
 // result of render_surface(map, view) for the photograph's depth map. `guess`: inverse z-depths
 // [1/m] of pixels without a surface: the result of filled() for the same view, at any resolution.
-// Throws an Error if sizes disagree or if `guess` is empty.
+// `mask`: of the photograph's size and 0 where the photograph is masked, or empty (nowhere); it
+// decides on PinholeImage::usable alone. Throws an Error if sizes disagree or if `guess` is empty.
 PinholeImage resampled(const cv::Mat3b& photograph, const cv::Mat1b& opaque,
                        const CameraModel& camera, const PinholeView& view, const cv::Mat1f& surface,
-                       const cv::Mat1f& guess);
+                       const cv::Mat1f& guess, const cv::Mat1b& mask = {});
 
 // Resamples a depth map to the pinhole. The result has the camera of `view` and its pose.
 // `surface`: the result of render_surface(map, view), from which the depths are taken; the result

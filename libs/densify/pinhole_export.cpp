@@ -88,6 +88,13 @@ class Export {
     return read_final_map(project_, maps_, image, mask);
   }
 
+  // The mask of a photograph in its full size; empty: none. `camera`: of this size.
+  cv::Mat1b full_mask(std::size_t image, const CameraModel& camera) const {
+    View full = project_.views[image];
+    full.camera = camera;
+    return survey::working_mask(full, {}, project_.options.ignore_mask_label);
+  }
+
   // The resolution at which OpenMVS, with this run's options, would work on the pinhole image.
   cv::Size map_size(const CameraModel& pinhole, std::size_t image) const {
     if (!maps_.are_final)
@@ -118,16 +125,16 @@ class Export {
     io::write_png(io::mask_beside(file), pinhole.label);
     const int exact = cv::countNonZero(pinhole.label == cloud::kExact);
     exported_[image].exact = exact / static_cast<double>(pinhole.label.total());
-    write_for_trainers(file, pinhole.label);
+    write_for_trainers(file, pinhole.usable);
   }
 
   // Trainers expect a folder of images without masks, and masks of two values in another folder.
-  void write_for_trainers(const fs::path& file, const cv::Mat1b& label) const {
+  void write_for_trainers(const fs::path& file, const cv::Mat1b& usable) const {
     const fs::path name = file.lexically_relative(folder_ / "images");
     link_or_copy(file, folder_ / kPinholeModel / "images" / name);
     fs::path mask = folder_ / kPinholeModel / "masks" / name;
     make_folder(mask.parent_path());
-    io::write_png(mask.replace_extension(".png"), label != cloud::kNothing);
+    io::write_png(mask.replace_extension(".png"), usable);
   }
 
   void export_image(std::size_t image) {
@@ -143,8 +150,8 @@ class Export {
     const cv::Mat1f coarse = cloud::render_surface(map, small);
     export_map(image, std::move(map), small, coarse);
     const cv::Mat1f guess = cloud::filled(coarse, static_cast<float>((1 / near_ + 1 / far_) / 2));
-    const cloud::PinholeImage pinhole =
-        cloud::resampled(color, photograph.opaque, camera, view, surface, guess);
+    const cloud::PinholeImage pinhole = cloud::resampled(color, photograph.opaque, camera, view,
+                                                         surface, guess, full_mask(image, camera));
     points_.find(image, view, pinhole);
     write_image(image, pinhole);
   }
@@ -276,13 +283,13 @@ class Export {
 std::uint64_t bytes_needed_to_resample(const View& view) {
   const auto area = [](cv::Size size) { return static_cast<std::uint64_t>(size.area()); };
   const std::uint64_t photograph = area(view.header.size);
-  // Photograph and opacity; depth, colour, label and the encoded colour of a pinhole at most 1.4
-  // times as wide and as high. While the photograph or its colours are read, the memory for
-  // reading.
+  // Photograph, opacity and mask; depth, colour, label, usable pixels and the encoded colour of a
+  // pinhole at most 1.4 times as wide and as high. While the photograph or its colours are read,
+  // the memory for reading; its mask needs less.
   const unsigned decode =
       std::max(view.header.decode_bytes, view.colors.empty() ? 0 : view.colors_header.decode_bytes);
   const std::uint64_t images =
-      std::max<std::uint64_t>(decode + 4, 4 + 2 * (4 + 3 + 1 + 4)) * photograph;
+      std::max<std::uint64_t>(decode + 4, 5 + 2 * (4 + 3 + 1 + 1 + 4)) * photograph;
   // The map, the map of the pinhole and the memory for writing it; two depth images, filled.
   const std::uint64_t pixels = area({view.camera.width, view.camera.height});
   const std::uint64_t pinhole = bytes_of_map(pixels) + io::dmap_bytes_needed(pixels) + 16 * pixels;

@@ -19,8 +19,9 @@ std::uint64_t bytes_needed_to_resample(const View& view);
 //                                       resampled photograph; NAME: see exported_name()
 //   images/NAME.mask.png                its labels (cloud::PinholeImage); NAME without extension
 //   colmap/images/NAME                  the resampled photograph again, as a hard link if possible
-//   colmap/masks/NAME.png               NAME without extension: 0 where the label is kNothing,
-//                                       otherwise 255
+//   colmap/masks/NAME.png               NAME without extension: the usable pixels
+//                                       (cloud::PinholeImage), without those that a mask of the run
+//                                       leaves out
 //   colmap/sparse/0/*.bin               the model of these images (write_pinhole_model())
 //   depthNNNN.dmap                      depth maps of the pinhole cameras
 //   scene.mvs                           all images in the scene's order; images without a depth map
@@ -30,10 +31,9 @@ std::uint64_t bytes_needed_to_resample(const View& view);
 //   pinhole_export.json                 facts about the resampling, and the list of written files
 // and the offset of the scene if it has one. Moves the sparse points out of the project's scene,
 // which has no points afterwards. The colours are those of View::colors if the views have such
-// files. `maps`: the result of find_existing_maps(). Resamples `at_once`
-// images at the same time. Precondition: check_pinhole_export() (pinhole_folder.h) has returned and
-// the cloud is complete. Throws an Error if an input cannot be
-// read or a file cannot be written.
+// files. `maps`: the result of find_existing_maps(). Resamples `at_once` images at the same time.
+// Precondition: check_pinhole_export() (pinhole_folder.h) has returned and the cloud is complete.
+// Throws an Error if an input cannot be read or a file cannot be written.
 void export_pinholes(Project& project, const OutputOptions& output, const ExistingMaps& maps,
                      std::size_t at_once, const Context& context);
 

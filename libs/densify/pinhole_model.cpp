@@ -56,7 +56,7 @@ void PinholePoints::find(std::size_t image, const cloud::PinholeView& view,
     if (!geometry::is_in_image(view.camera, pixel, -0.5)) continue;
     const cv::Point at(cvRound(pixel.x()), cvRound(pixel.y()));
     if (!inside.contains(at)) continue;
-    seen.shown = picture.label(at) != cloud::kNothing;
+    seen.shown = picture.usable(at) != 0;
     const cv::Vec3b& color = picture.color(at);
     seen.color = {color[2], color[1], color[0]};
   }

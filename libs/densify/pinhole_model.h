@@ -26,8 +26,8 @@ class PinholePoints {
   PinholePoints(const Scene& scene, std::span<const std::size_t> images);
 
   // Finds the points of the image `image` that the picture of its pinhole, `view`, shows: the pixel
-  // at the point's projection, rounded to whole pixels, is in the picture, and its label is not
-  // cloud::kNothing. Several threads may call this function for different images.
+  // at the point's projection, rounded to whole pixels, is in the picture, and usable
+  // (PinholeImage::usable). Several threads may call this function for different images.
   void find(std::size_t image, const cloud::PinholeView& view, const cloud::PinholeImage& picture);
 
   // Gives `exported` all points of the scene, with the views in which they were found, and the mean

@@ -298,6 +298,26 @@ TEST(PinholeImage, LeavesOutTransparentPixels) {
   EXPECT_EQ(image.color(middle, view.camera.width / 2 + 5), cv::Vec3b(10, 20, 30));
 }
 
+TEST(PinholeImage, MaskedPixelsKeepTheirColourAndAreNotUsable) {
+  const CameraModel model = flat(0.02, {0, 0, 1});
+  const PinholeView view = pinhole_for(model, kNear, kFar);
+  const cv::Size size(view.camera.width, view.camera.height);
+  const cv::Mat1f surface(size, 1.0f);
+  const cv::Mat3b photograph(model.height, model.width, cv::Vec3b(10, 20, 30));
+  cv::Mat1b mask(model.height, model.width, std::uint8_t{1});
+  mask(cv::Rect(0, 0, model.width / 2, model.height)) = 0;
+  const PinholeImage all = resampled(photograph, {}, model, view, surface, surface);
+  const PinholeImage masked = resampled(photograph, {}, model, view, surface, surface, mask);
+  const PinholeImage transparent = resampled(photograph, mask, model, view, surface, surface);
+  EXPECT_EQ(cv::norm(all.color, masked.color, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(all.label, masked.label, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(all.usable, all.label != kNothing, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(masked.usable, transparent.usable, cv::NORM_INF), 0);
+  const int usable = cv::countNonZero(masked.usable), without_mask = cv::countNonZero(all.usable);
+  EXPECT_GT(usable, without_mask / 4);
+  EXPECT_LT(usable, 3 * without_mask / 4);
+}
+
 TEST(PinholeImage, RefusesOtherSizes) {
   const CameraModel model = flat(0.02, {0, 0, 1});
   const PinholeView view = pinhole_for(model, kNear, kFar);
