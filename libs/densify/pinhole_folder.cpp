@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -66,6 +67,24 @@ void check_folder(const Project& project, const fs::path& folder) {
     fail("{} {}: contains other files: give an empty or a new folder", name, folder.string());
 }
 
+// Trainers of splats write files into the folder of their data, and take them again the next time.
+void warn_of_files_of_trainers(const fs::path& folder, const fs::path& staging,
+                               const Context& context) {
+  std::vector<fs::path> kept;
+  std::error_code error;
+  for (fs::recursive_directory_iterator i(folder / kPinholeModel, error), end; !error && i != end;
+       i.increment(error)) {
+    const fs::path& file = i->path();
+    if (!i->is_directory() && !fs::exists(staging / file.lexically_relative(folder)))
+      kept.push_back(file);
+  }
+  if (kept.empty()) return;
+  context.warning(
+      "{}: is not of this export and is kept, as are {} other files: a trainer may take them for "
+      "its own. Give a new folder, or delete {} first",
+      std::ranges::min(kept).string(), kept.size() - 1, (folder / kPinholeModel).string());
+}
+
 }  // namespace
 
 void remove_earlier_export(const fs::path& folder, const fs::path& staging,
@@ -86,6 +105,7 @@ void remove_earlier_export(const fs::path& folder, const fs::path& staging,
   if (!files.changed.empty())
     context.warning("{}: was changed after the earlier export and is kept, as are {} other files",
                     (folder / files.changed.front()).string(), files.changed.size() - 1);
+  warn_of_files_of_trainers(folder, staging, context);
 }
 
 void check_pinhole_export(const Project& project, const fs::path& folder) {

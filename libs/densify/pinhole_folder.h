@@ -24,8 +24,9 @@ inline constexpr const char* kPinholeModel = "colmap";
 // Removes the files of an earlier export, which are listed in its kPinholeMarker, from `folder`.
 // `staging`: the folder with the new export, whose files will be moved into `folder` later. A file
 // stays in two cases: `staging` contains a file with the same relative path, or the file was
-// changed after the earlier export. Warns of changed files that stay. Warns, and removes nothing,
-// if the earlier export has no list of its files. Does nothing if `folder` contains no export.
+// changed after the earlier export. Warns of changed files that stay, and of all files that stay
+// below kPinholeModel. Warns, and removes nothing, if the earlier export has no list of its files.
+// Does nothing if `folder` contains no export.
 void remove_earlier_export(const std::filesystem::path& folder,
                            const std::filesystem::path& staging, const Context& context);
 

@@ -81,6 +81,18 @@ class Files(Exports):
         self.assertEqual(found["scene.ply"], read(self.at("work", "scene_dense.ply")))
         self.assertEqual(set(found), files_below(self.at("work", "pinholes")))
 
+    def test_files_of_trainers_are_named(self):
+        work = self.copy("work")
+        command = ("--fusion-mode", "-1", "--pinhole-export", "pinholes")
+        kept = "is not of this export and is kept"
+        for _ in range(2):
+            self.assertNotIn(kept, self.said(work, *command))
+        names = [f"pinholes/colmap/{name}" for name in ("sparse/0/points3D.ply", "images_2/0000.jpg")]
+        for name in names:
+            write(os.path.join(work, name), "mine\n")
+        self.assertIn(f"{names[1]}: {kept}, as are 1 other files", self.said(work, *command))
+        self.assertEqual([read(os.path.join(work, name)) for name in names], [b"mine\n"] * 2)
+
     def test_an_earlier_export_survives_a_full_disk_and_a_damaged_list_is_named(self):
         work = self.copy("work")
         folder = self.export(work, "--fusion-mode", "-1")
