@@ -23,7 +23,7 @@ void declare(OptionList& list, Raw& raw, Settings& settings) {
       .add("mesh-file,m", &settings.mesh, "mesh of the scene (<input>.ply)")
       .add("from-map", &settings.from_map,
            "labels on a map, for all photographs that see them: GeoJSON, GeoPackage or shape file "
-           "with one layer of polygons or points")
+           "with polygons or points")
       .add("from-photographs", &settings.from_photographs,
            "labels in photographs, for the map: COCO JSON with polygons or key points")
       .add("output-file,o", &settings.output,

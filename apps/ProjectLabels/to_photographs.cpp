@@ -37,9 +37,11 @@ std::vector<std::vector<labels::SeenLabel>> seen_labels(const Ground& ground,
   return seen;
 }
 
-void report(const Ground& ground, const std::vector<map::Label>& labels,
-            const labels::MapLabels& placed,
-            const std::vector<std::vector<labels::SeenLabel>>& seen) {
+// Warns of labels that no photograph sees, and returns the number of the others. Error if there is
+// no other label.
+std::size_t count_seen(const Ground& ground, const std::vector<map::Label>& labels,
+                       const labels::MapLabels& placed,
+                       const std::vector<std::vector<labels::SeenLabel>>& seen) {
   std::vector<bool> is_seen(labels.size(), false);
   for (const auto& view : seen)
     for (const labels::SeenLabel& label : view) is_seen[label.index] = true;
@@ -53,6 +55,7 @@ void report(const Ground& ground, const std::vector<map::Label>& labels,
     fail_in(ground.settings.from_map, "no photograph sees a label");
   warn_of(beside, "the mesh has no surface there");
   warn_of(unseen, "no photograph sees it");
+  return labels.size() - beside.size() - unseen.size();
 }
 
 // The photographs that see a label.
@@ -113,13 +116,13 @@ void to_photographs(const Ground& ground, const Context& context) {
   const labels::MapLabels placed =
       naming(settings.from_map, [&] { return labels::MapLabels(ground.surface, labels); });
   auto seen = seen_labels(ground, placed, context);
-  report(ground, labels, placed, seen);
+  const std::size_t count = count_seen(ground, labels, placed, seen);
   const std::vector<labels::LabelledPhotograph> photographs = labelled(ground, std::move(seen));
   if (!settings.masks.empty()) write_masks(ground, photographs, context);
   const fs::path file = outputs_of(settings).front();
   write_atomically(file, labels::coco_text(photographs));
-  log_info("{} labels in {} of {} photographs: {}", labels.size(), photographs.size(),
-           ground.survey.views.size(), file.string());
+  log_info("{} of {} labels are in {} of {} photographs: {}", count, labels.size(),
+           photographs.size(), ground.survey.views.size(), file.string());
 }
 
 }  // namespace axial::apps

@@ -3,6 +3,7 @@
 
 #include <ogr_srs_api.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -39,10 +40,10 @@ std::string category_of(OGRFeatureH feature, const std::string& field) {
   return value.empty() ? "label" : value;
 }
 
-// Adds features to a layer, with heights in the order of LabelFromPhotograph::heights.
+// Adds features with the fields of a label to a layer.
 class LabelLayer {
  public:
-  LabelLayer(OGRLayerH layer) : layer_(layer) {
+  explicit LabelLayer(OGRLayerH layer) : layer_(layer) {
     for (const char* name : {"name", "class", "photograph"})
       works_ = works_ && add_field(layer, name, OFTString);
   }
@@ -69,6 +70,7 @@ void add_place(OGRGeometryH line, const Eigen::Vector2d& place, double height) {
     OGR_G_AddPoint_2D(line, place.x(), place.y());
 }
 
+// Heights are in the order of LabelFromPhotograph::heights.
 Geometry polygons_of(const LabelFromPhotograph& one) {
   Geometry parts(OGR_G_CreateGeometry(wkbMultiPolygon25D));
   auto height = one.heights.begin();
@@ -96,12 +98,12 @@ Geometry points_of(const LabelFromPhotograph& one) {
   return points;
 }
 
-void add_labels(std::span<const LabelFromPhotograph> labels, LabelLayer& polygons,
-                LabelLayer& points) {
-  for (const LabelFromPhotograph& one : labels) {
-    if (!one.label.parts.empty()) polygons.add(one, polygons_of(one).get());
-    if (!one.label.points.empty()) points.add(one, points_of(one).get());
-  }
+bool has_parts(const LabelFromPhotograph& one) {
+  return !one.label.parts.empty();
+}
+
+bool has_points(const LabelFromPhotograph& one) {
+  return !one.label.points.empty();
 }
 
 void write_geojson(const fs::path& file, std::span<const LabelFromPhotograph> labels,
@@ -114,7 +116,10 @@ void write_geojson(const fs::path& file, std::span<const LabelFromPhotograph> la
       GDALDatasetCreateLayer(data.get(), "labels", system.get(), wkbUnknown, options.list());
   errors.require_written(layer != nullptr, file);
   LabelLayer both(layer);
-  add_labels(labels, both, both);
+  for (const LabelFromPhotograph& one : labels) {
+    if (has_parts(one)) both.add(one, polygons_of(one).get());
+    if (has_points(one)) both.add(one, points_of(one).get());
+  }
   data.reset();
   errors.require_written(both.works(), file);
   require_complete_geojson(file);
@@ -126,16 +131,22 @@ void write_package(const fs::path& file, std::span<const LabelFromPhotograph> la
   const FixedDate date;
   DatasetPtr data = make_vector_file("GPKG", file, errors);
   const System system(crs.empty() ? nullptr : OSRNewSpatialReference(crs.c_str()));
-  const auto layer = [&](const char* name, OGRwkbGeometryType type) {
+  bool works = true;
+  const auto write_layer = [&](const char* name, OGRwkbGeometryType type, auto has_shape,
+                               auto shape_of) {
+    if (std::ranges::none_of(labels, has_shape)) return;
     const OGRLayerH made = GDALDatasetCreateLayer(data.get(), name, system.get(), type, nullptr);
     errors.require_written(made != nullptr, file);
-    return LabelLayer(made);
+    LabelLayer layer(made);
+    for (const LabelFromPhotograph& one : labels)
+      if (has_shape(one)) layer.add(one, shape_of(one).get());
+    works = works && layer.works();
   };
-  LabelLayer polygons = layer("polygons", wkbMultiPolygon25D);
-  LabelLayer points = layer("points", wkbMultiPoint25D);
-  add_labels(labels, polygons, points);
+  write_layer("polygons", wkbMultiPolygon25D, has_parts, polygons_of);
+  write_layer("points", wkbMultiPoint25D, has_points,
+              [](const LabelFromPhotograph& one) { return points_of(one); });
   data.reset();
-  errors.require_written(polygons.works() && points.works(), file);
+  errors.require_written(works, file);
 }
 
 }  // namespace

@@ -22,11 +22,12 @@ struct Label {
   std::vector<Eigen::Vector2d> points;  // [map, or px of the photograph]
 };
 
-// The polygons and points of a GeoJSON, GeoPackage or shape file, in their order. Names, coordinate
-// reference systems and Errors as for read_areas(), which has no points. The class is the value of
-// `field` (in any case), or, if `field` is empty, of the first field of class, category, species
-// and label that has a value; otherwise "label". Error that names the file and the field if no
-// feature has the field `field`.
+// The polygons and points of all layers of a GeoJSON, GeoPackage or shape file, in their order;
+// layers of other shapes are left out. Names, coordinate reference systems and Errors as for
+// read_areas(), which has no points and one layer. The class is the value of `field` (in any case),
+// or, if `field` is empty, of the first field of class, category, species and label that has a
+// value; otherwise "label". Error that names the file and the field if no feature has the field
+// `field`.
 std::vector<Label> read_labels(const std::filesystem::path& file, const std::string& crs,
                                const std::string& field);
 
@@ -39,14 +40,16 @@ struct LabelFromPhotograph {
   std::vector<double> heights;
 };
 
-// Writes a feature with heights for each label that has a part or a point: a GeoJSON with
-// MultiPolygons and MultiPoints, and a GeoPackage with the layers "polygons" and "points". Their
-// fields are "name", "class" and "photograph". Coordinates of the GeoJSON have four digits. `crs`:
-// WKT of the coordinates; empty: none. The same labels give the same bytes. Both files are written
-// together (write_together()). Error that names a file that cannot be written.
 struct LabelFiles {
   std::filesystem::path geojson, package;
 };
+
+// Writes a feature with heights for each label that has a part or a point: a GeoJSON with
+// MultiPolygons and MultiPoints, and a GeoPackage with the layers "polygons" and "points". A layer
+// without features is left out. Their fields are "name", "class" and "photograph". Coordinates of
+// the GeoJSON have four digits. `crs`: WKT of the coordinates; empty: none. The same labels give
+// the same bytes. Both files are written together (write_together()). Error that names a file that
+// cannot be written.
 void write_labels(const LabelFiles& files, std::span<const LabelFromPhotograph> labels,
                   const std::string& crs);
 

@@ -43,7 +43,8 @@ bool may_have(OGRLayerH layer, Shapes shapes) {
   return type == wkbUnknown || is_one_of(type, shapes);
 }
 
-OGRLayerH layer_of(GDALDatasetH data, Shapes shapes, const fs::path& file) {
+// The layers that may have such shapes. Of polygons alone, which are measured, only one.
+std::vector<OGRLayerH> layers_of(GDALDatasetH data, Shapes shapes, const fs::path& file) {
   std::vector<OGRLayerH> found;
   std::string names;
   for (int i = 0; i < GDALDatasetGetLayerCount(data); ++i) {
@@ -54,10 +55,10 @@ OGRLayerH layer_of(GDALDatasetH data, Shapes shapes, const fs::path& file) {
   }
   const char* const several = words_of(shapes).several;
   if (found.empty()) fail_in(file, "has no layer with {}", several);
-  if (found.size() > 1)
+  if (found.size() > 1 && shapes == Shapes::polygons)
     fail_in(file, "has several layers with {} ({}): write one of them to a file of its own",
             several, names);
-  return found.front();
+  return found;
 }
 
 // x is east and y is north in both systems.
@@ -181,14 +182,15 @@ void for_each_feature(const fs::path& file, const std::string& crs, Shapes shape
                       const std::function<void(const FoundFeature& found)>& use) {
   const GdalErrors errors;
   const DatasetPtr data = open_vectors(file, errors);
-  const OGRLayerH layer = layer_of(data.get(), shapes, file);
-  const Conversion conversion = conversion_to(crs, layer, file);
   std::size_t count = 0;
-  OGR_L_ResetReading(layer);
-  while (const Feature feature{OGR_L_GetNextFeature(layer)}) {
-    const std::string name = name_of(feature.get(), ++count);
-    const Geometry shape = shape_of(feature.get(), name, shapes, conversion.get(), file);
-    use({feature.get(), shape.get(), name});
+  for (const OGRLayerH layer : layers_of(data.get(), shapes, file)) {
+    const Conversion conversion = conversion_to(crs, layer, file);
+    OGR_L_ResetReading(layer);
+    while (const Feature feature{OGR_L_GetNextFeature(layer)}) {
+      const std::string name = name_of(feature.get(), ++count);
+      const Geometry shape = shape_of(feature.get(), name, shapes, conversion.get(), file);
+      use({feature.get(), shape.get(), name});
+    }
   }
   errors.require_vectors_read(true, file);
   if (count == 0) fail_in(file, "has {}", words_of(shapes).none);

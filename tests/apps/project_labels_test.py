@@ -68,7 +68,7 @@ class ToPhotographs(LabelsTest):
         made, said = self.makes(*self.project("from-map", "plots.geojson"))
         self.assertEqual(made, {"out.json"})
         self.assertIn("label 'far': the mesh has no surface there", said)
-        self.assertIn("3 labels in 3 of 3 photographs", said)
+        self.assertIn("2 of 3 labels are in 3 of 3 photographs", said)
         polygons, points = self.annotations("coral"), self.annotations("alga")
         self.assertEqual(set(polygons), set(names()))
         for name, centre in zip(names(), CENTRES):
@@ -152,11 +152,21 @@ class ToMap(LabelsTest):
         with contextlib.closing(sqlite3.connect(self.path("work", "out.gpkg"))) as table:
             self.assertEqual(table.execute("SELECT class, photograph FROM polygons").fetchall(),
                              [("coral", "0001.png")])
-        self.succeeds(*self.project("from-map", "out.geojson"))
-        left, top, width, height = self.annotations("coral")["0001.png"]["bbox"]
-        for value, expected in ((left, corners[0][0]), (top, corners[0][1]), (left + width, corners[2][0]),
-                                (top + height, corners[2][1])):
-            self.assertAlmostEqual(value, expected, delta=0.3)
+        for labels in ("out.geojson", "out.gpkg"):
+            self.succeeds(*self.project("from-map", labels))
+            left, top, width, height = self.annotations("coral")["0001.png"]["bbox"]
+            for value, expected in ((left, corners[0][0]), (top, corners[0][1]), (left + width, corners[2][0]),
+                                    (top + height, corners[2][1])):
+                self.assertAlmostEqual(value, expected, delta=0.3)
+
+    def test_the_geopackage_has_a_layer_for_each_shape_and_is_read(self):
+        self.succeeds(*self.project("from-map", "plots.geojson"))
+        shutil.move(self.path("work", "out.json"), self.path("work", "seen.json"))
+        self.succeeds(*self.project("from-photographs", "seen.json"))
+        said = self.succeeds(*self.project("from-map", "out.gpkg")).stdout
+        self.assertIn("6 of 6 labels are in 3 of 3 photographs", said)
+        self.assertEqual(set(self.annotations("coral")), set(names()))
+        self.assertEqual(set(self.annotations("alga")), set(names()))
 
 
 class Errors(LabelsTest):

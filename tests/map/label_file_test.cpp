@@ -97,9 +97,30 @@ TEST_F(LabelFile, IsReadAsItWasWritten) {
   EXPECT_EQ(again[0].category, "coral");
   EXPECT_EQ(again[0].parts, one.label.parts);
   EXPECT_EQ(again[1].points, one.label.points);
+  const auto packed = read_labels(files.package, crs, "");  // the layers one after the other
+  ASSERT_EQ(packed.size(), 2U);
+  EXPECT_EQ(packed[0].name, one.label.name);
+  EXPECT_EQ(packed[0].category, "coral");
+  EXPECT_EQ(packed[0].parts, one.label.parts);
+  EXPECT_EQ(packed[1].name, one.label.name);
+  EXPECT_EQ(packed[1].points, one.label.points);
   write_labels(files, std::vector{one, LabelFromPhotograph{}}, crs);
   EXPECT_EQ(read_file(files.geojson), text);
   EXPECT_EQ(read_file(files.package), bytes);
+}
+
+// A polygon layer without features is no layer for MeasureSurface either.
+TEST_F(LabelFile, HasNoLayersWithoutFeatures) {
+  LabelFromPhotograph one{"a.jpg", {"p", "coral", {}, {{1, 2}}}, {-3}};
+  const LabelFiles files{folder_ / "l.geojson", folder_ / "l.gpkg"};
+  write_labels(files, std::vector{one}, "");
+  ASSERT_EQ(read_labels(files.package, "", "").size(), 1U);
+  EXPECT_THAT(axial::test::error_of([&] { read_areas(files.package, ""); }),
+              HasSubstr("has no layer with polygons"));
+  one.label = {"p", "coral", {{{{0, 0}, {2, 0}, {2, 2}}}}, {}};
+  one.heights = {-3, -3, -3};
+  write_labels(files, std::vector{one}, "");
+  EXPECT_EQ(read_areas(files.package, "").size(), 1U);
 }
 
 }  // namespace

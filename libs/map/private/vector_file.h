@@ -21,10 +21,11 @@ struct FoundFeature {
   std::string name;  // as read_areas() names areas
 };
 
-// Calls use(found) for each feature of a GeoJSON, GeoPackage or shape file, in their order.
-// Coordinates are converted as by read_areas(). Error that names the file, and the feature: the
-// file cannot be read; it has no layer with such shapes, or several, or no feature; a feature has
-// another shape, or coordinates that cannot be converted.
+// Calls use(found) for each feature of a GeoJSON, GeoPackage or shape file, layer by layer in their
+// order. Layers of other shapes are left out. Coordinates are converted as by read_areas(). Error
+// that names the file, and the feature: the file cannot be read; it has no layer with such shapes,
+// or several layers for Shapes::polygons; these layers have no feature; a feature has another
+// shape, or coordinates that cannot be converted.
 void for_each_feature(const std::filesystem::path& file, const std::string& crs, Shapes shapes,
                       const std::function<void(const FoundFeature& found)>& use);
 
