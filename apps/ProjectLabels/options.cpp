@@ -40,7 +40,7 @@ void declare(OptionList& list, Raw& raw, Settings& settings) {
       .output_folder()
       .add_with_default("least-part", &raw.least_part,
                         "with --from-photographs: parts of a label on the map with less than this "
-                        "share of its area are left out [%]")
+                        "share of its area in the photograph are left out [%]")
       .range(0, 50)
       .add_max_memory();
   io::declare_scene_options(list, raw.scene);

@@ -19,7 +19,7 @@ struct Settings {
   std::filesystem::path output;  // the names of the files without their extensions
   std::string class_field;       // of from_map; empty: the usual ones
   std::filesystem::path masks;   // folder for pictures of from_map's labels; empty: none
-  double least_part = 0.02;      // of a label of from_photographs, as a share of its area
+  double least_part = 0.02;      // of a label of from_photographs: share of its pixels
 };
 
 struct Options {

@@ -82,7 +82,7 @@ bool is_empty(const labels::CarriedLabel& carried) {
 }  // namespace
 
 void to_map(const Ground& ground, const Context& context) {
-  constexpr double kMuch = 0.1;
+  constexpr double kMuch = 0.1, kCoarse = 2;
   const Settings& settings = ground.settings;
   const labels::CocoLabels coco = labels::read_coco(settings.from_photographs);
   const std::vector<Drawn> drawn = drawn_labels(coco, ground);
@@ -91,7 +91,7 @@ void to_map(const Ground& ground, const Context& context) {
     fail_in(settings.mesh, "no label of {} lies on its surface",
             settings.from_photographs.string());
   const auto names = survey::photograph_names(ground.survey);
-  std::vector<std::string> lost, torn;
+  std::vector<std::string> lost, torn, coarse;
   std::vector<map::LabelFromPhotograph> on_map;
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     const std::string photograph = names[drawn[i].view].generic_string();
@@ -100,10 +100,14 @@ void to_map(const Ground& ground, const Context& context) {
       lost.push_back(name);
     else if (carried[i].missing > kMuch)
       torn.push_back(name);
+    if (carried[i].coarseness > kCoarse) coarse.push_back(name);
     on_map.push_back({photograph, std::move(carried[i].label), std::move(carried[i].heights)});
   }
   warn_of(lost, "the map shows none of it");
   warn_of(torn, "more than a tenth of it has no surface");
+  warn_of(coarse,
+          "its outline is coarser than two pixels of the photograph, because a part of it lies far "
+          "away: does it reach over an edge?");
   const auto files = outputs_of(settings);
   map::write_labels({files[0], files[1]}, on_map, ground.crs);
   log_info("{} of {} labels are on the map: {}, {}", drawn.size() - lost.size(), drawn.size(),

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <utility>
@@ -19,7 +21,7 @@ namespace {
 
 using Parts = std::vector<std::vector<geometry::Ring>>;
 
-// The polygon of a label in a photograph.
+// A polygon in a photograph, or on the map near the origin.
 class DrawnPolygon {
  public:
   explicit DrawnPolygon(const Parts& parts) {
@@ -76,6 +78,7 @@ std::vector<Eigen::Vector2d> pixels_in(const DrawnPolygon& polygon, const Parts&
 
 // The part of the map that pixels see.
 struct SeenGround {
+  std::vector<Eigen::Vector2d> places;  // of the pixels that see a surface
   Eigen::AlignedBox2d box;
   double width = 0;    // of a pixel on the map: the median
   double missing = 0;  // share of the pixels that see no surface
@@ -97,16 +100,16 @@ SeenGround ground_of(const LabelledSurface& surface, const PosedRays& rays,
       kPointGrain);
   SeenGround ground;
   std::vector<double> widths;
-  std::size_t seen = 0;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (!places[i]) continue;
-    ++seen;
-    ground.box.extend(places[i]->head<2>());
+    ground.places.emplace_back(places[i]->head<2>());
+    ground.box.extend(ground.places.back());
     if (beside[i]) widths.push_back((*beside[i] - *places[i]).head<2>().norm());
   }
   if (!widths.empty()) ground.width = upper_median(std::move(widths));
   if (!pixels.empty())
-    ground.missing = 1 - static_cast<double>(seen) / static_cast<double>(pixels.size());
+    ground.missing =
+        1 - static_cast<double>(ground.places.size()) / static_cast<double>(pixels.size());
   return ground;
 }
 
@@ -123,20 +126,21 @@ geometry::SampleGrid grid_over(const SeenGround& ground) {
           count(size.y())};
 }
 
-double area_of(const std::vector<geometry::Ring>& part) {
-  double twice = 0;
-  for (const geometry::Ring& ring : part)
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Eigen::Vector2d a = ring[i] - ring[0], b = ring[(i + 1) % ring.size()] - ring[0];
-      twice += a.x() * b.y() - a.y() * b.x();
-    }
-  return twice / 2;
-}
-
-void leave_out_small(double least_part, Parts& parts) {
-  double sum = 0;
-  for (const auto& part : parts) sum += area_of(part);
-  std::erase_if(parts, [&](const auto& part) { return !(area_of(part) >= least_part * sum); });
+// Weighs parts by the pixels that see them: in an oblique photograph, a bit of ground behind the
+// edge of a colony may be larger on the map than the colony.
+void leave_out_small(double least_part, const SeenGround& ground, Parts& parts) {
+  if (parts.size() < 2) return;
+  std::vector<double> weights;
+  for (const auto& part : parts) {
+    const DrawnPolygon on_map(Parts{part});
+    weights.push_back(static_cast<double>(std::ranges::count_if(
+        ground.places, [&](const Eigen::Vector2d& place) { return on_map.contains(place); })));
+  }
+  const double least = least_part * std::accumulate(weights.begin(), weights.end(), 0.0);
+  Parts kept;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (weights[i] >= least) kept.push_back(std::move(parts[i]));
+  parts = std::move(kept);
 }
 
 }  // namespace
@@ -144,20 +148,22 @@ void leave_out_small(double least_part, Parts& parts) {
 CarriedLabel carried_to_map(const LabelledSurface& surface, const PosedRays& rays,
                             const map::Label& drawn, double least_part) {
   const Eigen::Vector3d& origin = surface.origin();
-  CarriedLabel carried{{drawn.name, drawn.category, {}, {}}, {}, 0};
+  CarriedLabel carried{{drawn.name, drawn.category, {}, {}}, {}, 0, 1};
   const DrawnPolygon polygon(drawn.parts);
   std::vector<Eigen::Vector2d> pixels = pixels_in(polygon, drawn.parts, rays.posed().camera);
-  pixels.insert(pixels.end(), drawn.points.begin(), drawn.points.end());
+  std::ranges::copy_if(drawn.points, std::back_inserter(pixels),
+                       [&](const Eigen::Vector2d& point) { return rays.is_in_photograph(point); });
   const SeenGround ground = ground_of(surface, rays, pixels);
   carried.missing = ground.missing;
   if (!drawn.parts.empty() && !ground.box.isEmpty()) {
-    carried.label.parts =
-        geometry::region_outlines(grid_over(ground), [&](const Eigen::Vector2d& at) {
-          const auto place = surface.highest(at);
-          const auto pixel = place ? surface.pixel_of(rays, *place) : std::nullopt;
-          return pixel && polygon.contains(*pixel);
-        });
-    leave_out_small(least_part, carried.label.parts);
+    const geometry::SampleGrid grid = grid_over(ground);
+    if (ground.width > 0) carried.coarseness = grid.step / ground.width;
+    carried.label.parts = geometry::region_outlines(grid, [&](const Eigen::Vector2d& at) {
+      const auto place = surface.highest(at);
+      const auto pixel = place ? surface.pixel_of(rays, *place) : std::nullopt;
+      return pixel && polygon.contains(*pixel);
+    });
+    leave_out_small(least_part, ground, carried.label.parts);
   }
   for (auto& part : carried.label.parts)
     for (geometry::Ring& ring : part)

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "base/atomic_file.h"
@@ -63,22 +64,37 @@ class LabelLayer {
   bool works_ = true;
 };
 
-void add_place(OGRGeometryH line, const Eigen::Vector2d& place, double height) {
-  if (std::isfinite(height))
-    OGR_G_AddPoint(line, place.x(), place.y(), height);
-  else
-    OGR_G_AddPoint_2D(line, place.x(), place.y());
+// The heights of the corners of all rings. A corner without a surface has the height of the nearest
+// corner with one.
+std::vector<double> corner_heights(const LabelFromPhotograph& one) {
+  std::vector<Eigen::Vector2d> corners;
+  for (const auto& rings : one.label.parts)
+    for (const geometry::Ring& ring : rings)
+      corners.insert(corners.end(), ring.begin(), ring.end());
+  std::vector<double> heights(corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    heights[i] = one.heights[i];
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < corners.size() && !std::isfinite(one.heights[i]); ++k) {
+      const double distance = (corners[k] - corners[i]).squaredNorm();
+      if (!std::isfinite(one.heights[k]) || distance >= least) continue;
+      least = distance;
+      heights[i] = one.heights[k];
+    }
+  }
+  return heights;
 }
 
-// Heights are in the order of LabelFromPhotograph::heights.
 Geometry polygons_of(const LabelFromPhotograph& one) {
   Geometry parts(OGR_G_CreateGeometry(wkbMultiPolygon25D));
-  auto height = one.heights.begin();
+  const std::vector<double> heights = corner_heights(one);
+  auto height = heights.begin();
   for (const auto& rings : one.label.parts) {
     const OGRGeometryH polygon = OGR_G_CreateGeometry(wkbPolygon25D);
     for (const geometry::Ring& ring : rings) {
       const OGRGeometryH line = OGR_G_CreateGeometry(wkbLinearRing);
-      for (const Eigen::Vector2d& corner : ring) add_place(line, corner, *height++);
+      for (const Eigen::Vector2d& corner : ring)
+        OGR_G_AddPoint(line, corner.x(), corner.y(), *height++);
       OGR_G_CloseRings(line);
       OGR_G_AddGeometryDirectly(polygon, line);
     }
@@ -92,7 +108,8 @@ Geometry points_of(const LabelFromPhotograph& one) {
   const auto& places = one.label.points;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const OGRGeometryH point = OGR_G_CreateGeometry(wkbPoint25D);
-    add_place(point, places[i], one.heights[one.heights.size() - places.size() + i]);
+    OGR_G_AddPoint(point, places[i].x(), places[i].y(),
+                   one.heights[one.heights.size() - places.size() + i]);
     OGR_G_AddGeometryDirectly(points.get(), point);
   }
   return points;

@@ -36,7 +36,7 @@ struct LabelFromPhotograph {
   std::string photograph;  // its name
   Label label;             // [map]
   // Of the surface at the places of the label [map, m]: first at the corners of all rings, then at
-  // the points. NaN: no surface.
+  // the points. NaN at a corner: no surface there; at least one corner and all points have heights.
   std::vector<double> heights;
 };
 
@@ -46,10 +46,10 @@ struct LabelFiles {
 
 // Writes a feature with heights for each label that has a part or a point: a GeoJSON with
 // MultiPolygons and MultiPoints, and a GeoPackage with the layers "polygons" and "points". A layer
-// without features is left out. Their fields are "name", "class" and "photograph". Coordinates of
-// the GeoJSON have four digits. `crs`: WKT of the coordinates; empty: none. The same labels give
-// the same bytes. Both files are written together (write_together()). Error that names a file that
-// cannot be written.
+// without features is left out. A corner without a height gets that of the nearest corner with one.
+// Their fields are "name", "class" and "photograph". Coordinates of the GeoJSON have four digits.
+// `crs`: WKT of the coordinates; empty: none. The same labels give the same bytes. Both files are
+// written together (write_together()). Error that names a file that cannot be written.
 void write_labels(const LabelFiles& files, std::span<const LabelFromPhotograph> labels,
                   const std::string& crs);
 

@@ -226,6 +226,55 @@ TEST(CarriedLabels, DoNotTearAtAnEdge) {
   for (const double height : carried.heights) EXPECT_NEAR(height, kOffset.z() - kPlate, 1e-5);
 }
 
+// Looks along x, 65 degrees from the vertical.
+geometry::PosedCamera oblique_camera() {
+  constexpr double kTilt = 65 * std::numbers::pi / 180;
+  geometry::PosedCamera posed = camera();
+  posed.pose.rotation.row(0) << std::cos(kTilt), 0, -std::sin(kTilt);
+  posed.pose.rotation.row(1) << 0, 1, 0;
+  posed.pose.rotation.row(2) << std::sin(kTilt), 0, std::cos(kTilt);
+  return posed;
+}
+
+// The ground behind the plate is larger on the map than the plate, but not in the photograph.
+TEST(CarriedLabels, ThatAreObliqueKeepThePartOfMostPixels) {
+  constexpr double kNear = 1.2, kFar = 1.4, kOver = 0.12;
+  const PosedRays rays(oblique_camera());
+  Mesh mesh = ground();
+  add_rectangle(mesh, kNear, kFar, kHalf, kPlate);
+  const LabelledSurface surface(mesh, {}, axes());
+  map::Label drawn{"plate", "plate", {{{}}}, {}};
+  for (const auto& [x, y] : {std::pair(kNear, -kHalf), std::pair(kNear, kHalf),
+                             std::pair(kFar + kOver, kHalf), std::pair(kFar + kOver, -kHalf)})
+    drawn.parts[0][0].push_back(*rays.pixel_of({x, y, kPlate}));
+  const auto is_plate = [](const auto& part) {
+    return std::ranges::all_of(part[0], [](const Eigen::Vector2d& corner) {
+      return corner.x() - kOffset.x() < kFar + kPixel;
+    });
+  };
+  double plate = 0, behind = 0;
+  for (const auto& part : carried_to_map(surface, rays, drawn, 0).label.parts)
+    (is_plate(part) ? plate : behind) += geometry::PolygonPieces(part).area();
+  EXPECT_GT(behind, 1.2 * plate);
+  const CarriedLabel carried = carried_to_map(surface, rays, drawn, 0.5);
+  ASSERT_EQ(carried.label.parts.size(), 1U);
+  EXPECT_TRUE(is_plate(carried.label.parts[0]));
+  EXPECT_LT(carried.coarseness, 1.001);
+}
+
+// Most of the label is near, and its tip is next to the horizon.
+TEST(CarriedLabels, WithAFarPlaceAreCoarse) {
+  Mesh mesh;
+  add_rectangle(mesh, -300, 300, 300, kGround);
+  const LabelledSurface surface(mesh, {}, axes());
+  const PosedRays rays(oblique_camera());
+  map::Label drawn{"a", "a", {{{}}}, {}};
+  for (const auto& [x, y] : {std::pair(1.0, -0.2), std::pair(1.0, 0.2), std::pair(100.0, 0.0)})
+    drawn.parts[0][0].push_back(*rays.pixel_of({x, y, kGround}));
+  ASSERT_TRUE(rays.is_in_photograph(drawn.parts[0][0][2]));
+  EXPECT_GT(carried_to_map(surface, rays, drawn, 0).coarseness, 2);
+}
+
 TEST(CarriedLabels, BesideTheSurfaceAreEmpty) {
   Mesh mesh;
   add_rectangle(mesh, -0.3, -0.1, 0.3, kGround);

@@ -89,6 +89,9 @@ TEST_F(LabelFile, IsReadAsItWasWritten) {
   ASSERT_EQ(json["features"].size(), 2U);  // an empty label is left out
   EXPECT_EQ(json["features"][0]["properties"]["photograph"], "left/a.jpg");
   EXPECT_EQ(json["features"][0]["geometry"]["coordinates"][0][0][0][2], -20);
+  // Without a height, the corner (500009, 9) gets that of the nearest corner with one, (500003,
+  // 12).
+  EXPECT_EQ(json["features"][0]["geometry"]["coordinates"][0][0][1][2], -26);
   EXPECT_EQ(json["features"][1]["geometry"]["coordinates"][0],
             (std::vector<double>{500001, 2, -30}));
   const auto again = read_labels(files.geojson, crs, "");
