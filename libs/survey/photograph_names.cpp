@@ -31,6 +31,11 @@ std::vector<fs::path> photograph_names(const Survey& survey) {
 
 std::vector<std::size_t> views_named(const std::string& name, const Survey& survey) {
   std::vector<std::size_t> found;
+  if (survey.views.empty()) return found;
+  const std::vector<fs::path> names = photograph_names(survey);
+  for (std::size_t view = 0; view < names.size(); ++view)
+    if (names[view].generic_string() == name) found.push_back(view);
+  if (!found.empty()) return found;
   for (std::size_t view = 0; view < survey.views.size(); ++view) {
     const std::string path = survey.views[view].file.generic_string();
     if (path == name || path.ends_with("/" + name)) found.push_back(view);

@@ -15,7 +15,8 @@ namespace axial::survey {
 // Precondition: there is a view.
 std::vector<std::filesystem::path> photograph_names(const Survey& survey);
 
-// The views of the photographs whose path ends with `name`, in whole names of folders and files.
+// The view whose photograph_names() is `name`. If there is none, the views of the photographs whose
+// path ends with `name`, in whole names of folders and files.
 std::vector<std::size_t> views_named(const std::string& name, const Survey& survey);
 
 }  // namespace axial::survey
