@@ -70,6 +70,13 @@ void keep(Points& part, Points& spare, const Distance& distance) {
 
 }  // namespace
 
+double signed_area(const Ring& ring) {
+  double twice = 0;  // relative to a corner, so that large coordinates cost no digits
+  for (std::size_t i = 2; i < ring.size(); ++i)
+    twice += cross(ring[i - 1] - ring[0], ring[i] - ring[0]);
+  return twice / 2;
+}
+
 std::optional<Eigen::Vector2d> crossing_of(std::span<const Ring> rings) {
   constexpr std::uint64_t kMostPairs = 1'000'000'000;
   const std::vector<Edge> edges = edges_of(rings);

@@ -15,6 +15,10 @@ namespace axial::geometry {
 // first corner.
 using Ring = std::vector<Eigen::Vector2d>;
 
+// The area of a ring without crossings: above 0 if its corners follow each other against the
+// direction of clock hands, with x to the right and y upwards.
+double signed_area(const Ring& ring);
+
 // A place at which rings cross themselves or each other, or run along each other; nullopt if there
 // is none. Rings may touch or cross in corners. Crossings up to kTouch from a corner count as
 // touching. Precondition: the coordinates are finite. Error if more than 1e9 pairs of edges overlap

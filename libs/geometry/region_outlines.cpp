@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/region_outlines.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -112,42 +113,55 @@ class Segments {
 
 using Line = std::vector<cv::Point2f>;  // [steps]
 
-Line outline_of(const std::vector<Crossing>& crossings, const Samples& samples) {
+// A closed line of the outline: all places of crossings, and the corners of the ring.
+struct Outline {
+  Line places, corners;
+  double area = 0;  // of the places; below 0: a hole
+  Eigen::AlignedBox2f box;
+
+  // Whether the line goes around a hole. With all places, lines of one region do not cross.
+  bool is_around(const Outline& hole) const {
+    const cv::Point2f place = hole.places.front();
+    return box.contains(Eigen::Vector2f(place.x, place.y)) &&
+           cv::pointPolygonTest(places, place, false) >= 0;
+  }
+};
+
+Outline outline_of(const std::vector<Crossing>& crossings, const Samples& samples) {
   constexpr double kStraight = 0.02;
-  Line line(crossings.size()), simple;
+  Outline outline;
+  outline.places.resize(crossings.size());
   parallel_for(
       crossings.size(),
       [&](std::size_t i) {
         const Eigen::Vector2d place = samples.border(crossings[i].inside, crossings[i].outside);
-        line[i] = {static_cast<float>(place.x()), static_cast<float>(place.y())};
+        outline.places[i] = {static_cast<float>(place.x()), static_cast<float>(place.y())};
       },
       64);
-  cv::approxPolyDP(line, simple, kStraight, true);
-  return simple;
+  for (const cv::Point2f& place : outline.places)
+    outline.box.extend(Eigen::Vector2f(place.x, place.y));
+  outline.area = cv::contourArea(outline.places, true);
+  cv::approxPolyDP(outline.places, outline.corners, kStraight, true);
+  return outline;
 }
 
-Ring ring_of(const Line& line, const SampleGrid& grid) {
+Ring ring_of(const Outline& outline, const SampleGrid& grid) {
   Ring ring;
-  for (const cv::Point2f& corner : line) ring.push_back(grid.at(corner.x, corner.y));
+  for (const cv::Point2f& corner : outline.corners) ring.push_back(grid.at(corner.x, corner.y));
   return ring;
 }
 
 // Gives each hole to the smallest outline around it.
-std::vector<std::vector<Ring>> parts_of(const std::vector<Line>& outlines,
-                                        const std::vector<Line>& holes, const SampleGrid& grid) {
+std::vector<std::vector<Ring>> parts_of(const std::vector<Outline>& outlines,
+                                        const std::vector<Outline>& holes, const SampleGrid& grid) {
   std::vector<std::vector<Ring>> parts;
-  for (const Line& outline : outlines) parts.push_back({ring_of(outline, grid)});
-  for (const Line& hole : holes) {
+  for (const Outline& outline : outlines) parts.push_back({ring_of(outline, grid)});
+  for (const Outline& hole : holes) {
     std::size_t around = outlines.size();
-    double least = 0;
-    for (std::size_t i = 0; i < outlines.size(); ++i) {
-      const double area = cv::contourArea(outlines[i]);
-      if ((around < outlines.size() && area >= least) ||
-          cv::pointPolygonTest(outlines[i], hole.front(), false) < 0)
-        continue;
-      around = i;
-      least = area;
-    }
+    for (std::size_t i = 0; i < outlines.size(); ++i)
+      if ((around == outlines.size() || outlines[i].area < outlines[around].area) &&
+          outlines[i].is_around(hole))
+        around = i;
     if (around < outlines.size()) parts[around].push_back(ring_of(hole, grid));
   }
   return parts;
@@ -175,11 +189,13 @@ std::vector<std::vector<Ring>> region_outlines(SampleGrid grid, const IsInside& 
     grid = grown(grid);
     samples.emplace(grid, is_inside);
   }
-  std::vector<Line> outlines, holes;
+  std::vector<Outline> outlines, holes;
   Segments(*samples, grid).each_line([&](const std::vector<Crossing>& crossings) {
-    Line line = outline_of(crossings, *samples);
-    if (line.size() < 3) return;
-    (cv::contourArea(line, true) < 0 ? holes : outlines).push_back(std::move(line));
+    Outline outline = outline_of(crossings, *samples);
+    // A line that turns around when it is simplified is thinner than the error.
+    if (outline.corners.size() < 3 || !(outline.area * cv::contourArea(outline.corners, true) > 0))
+      return;
+    (outline.area < 0 ? holes : outlines).push_back(std::move(outline));
   });
   return parts_of(outlines, holes, grid);
 }

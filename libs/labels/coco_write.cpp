@@ -39,15 +39,6 @@ void join(const geometry::Ring& hole, geometry::Ring& ring) {
   ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(here) + 1, way.begin(), way.end());
 }
 
-double area_of(const geometry::Ring& ring) {
-  double twice = 0;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Eigen::Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
-    twice += a.x() * b.y() - a.y() * b.x();
-  }
-  return std::abs(twice) / 2;
-}
-
 Json box_of(const Eigen::AlignedBox2d& box) {
   return Json::array({rounded(box.min().x()), rounded(box.min().y()), rounded(box.sizes().x()),
                       rounded(box.sizes().y())});
@@ -67,7 +58,7 @@ Json polygons_of(const map::Label& label) {
       numbers.push_back(rounded(at.x()));
       numbers.push_back(rounded(at.y()));
     }
-    area += area_of(ring);
+    area += std::abs(geometry::signed_area(ring));
     polygons.push_back(std::move(numbers));
   }
   return {{"segmentation", std::move(polygons)}, {"area", rounded(area)}, {"bbox", box_of(box)}};

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "geometry/faces.h"
+
 namespace axial::labels {
 
 LabelledSurface::LabelledSurface(const Mesh& mesh, const LocalFrame& frame,
@@ -22,12 +24,9 @@ std::optional<Eigen::Vector3d> LabelledSurface::first_on(const Eigen::Vector3d& 
                                                          const Eigen::Vector3d& direction) const {
   const auto hit = surface_.first_hit(from, direction);
   if (!hit || (!mesh_.unseen.empty() && mesh_.unseen[hit->face] != 0)) return std::nullopt;
-  const auto& face = mesh_.faces[hit->face];
-  const auto corner = [&](std::size_t k) -> Eigen::Vector3d {
-    return mesh_.vertices[face[k]].cast<double>();
-  };
+  const auto [a, b, c] = geometry::corners_of(mesh_, hit->face);
   const double u = hit->u, v = hit->v;
-  return to_map((1 - u - v) * corner(0) + u * corner(1) + v * corner(2));
+  return to_map((1 - u - v) * a + u * b + v * c);
 }
 
 std::optional<Eigen::Vector3d> LabelledSurface::seen_by(const Sight& sight) const {

@@ -7,7 +7,10 @@
 #include <cmath>
 #include <utility>
 
+#include "base/error.h"
+#include "base/first_error.h"
 #include "base/parallel.h"
+#include "geometry/faces.h"
 #include "geometry/region_outlines.h"
 #include "labels/view_cone.h"
 
@@ -17,13 +20,6 @@ namespace {
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
 constexpr std::size_t kBlock = 256;
-
-Triangle corners_of(const Mesh& mesh, std::size_t face) {
-  Triangle corners;
-  for (std::size_t k = 0; k < 3; ++k)
-    corners[k] = mesh.vertices[mesh.faces[face][k]].cast<double>();
-  return corners;
-}
 
 std::vector<geometry::Ring> rings_from(const map::Label& label, const Eigen::Vector2d& origin) {
   std::vector<geometry::Ring> rings;
@@ -90,7 +86,17 @@ class MapLabels::Pixels {
 MapLabels::MapLabels(const LabelledSurface& surface, std::span<const map::Label> labels)
     : surface_(surface), labels_(labels), placed_(labels.size()) {
   make_blocks();
-  parallel_for(labels.size(), [&](std::size_t i) { placed_[i] = placed(labels[i]); });
+  FirstError error;
+  parallel_for(labels.size(), [&](std::size_t i) {
+    error.run(i, [&] {
+      try {
+        placed_[i] = placed(labels[i]);
+      } catch (const Error& reason) {
+        fail("polygon '{}' {}", labels[i].name, reason.text());
+      }
+    });
+  });
+  error.rethrow();
 }
 
 // Faces that follow each other in a mesh mostly lie near each other.
@@ -99,7 +105,7 @@ void MapLabels::make_blocks() {
   blocks_.resize((faces + kBlock - 1) / kBlock);
   parallel_for(blocks_.size(), [&](std::size_t block) {
     for (std::size_t face = block * kBlock; face < std::min(faces, (block + 1) * kBlock); ++face)
-      for (const Eigen::Vector3d& corner : corners_of(surface_.mesh(), face))
+      for (const Eigen::Vector3d& corner : geometry::corners_of(surface_.mesh(), face))
         blocks_[block].extend(surface_.to_map(corner).head<2>());
   });
 }
@@ -129,7 +135,7 @@ MapLabels::Chunk MapLabels::chunk_in(std::size_t block, const Eigen::AlignedBox2
   for (std::size_t face = block * kBlock; face < std::min(mesh.faces.size(), (block + 1) * kBlock);
        ++face) {
     if (!mesh.unseen.empty() && mesh.unseen[face] != 0) continue;
-    const Triangle corners = corners_of(mesh, face);
+    const Triangle corners = geometry::corners_of(mesh, face);
     Eigen::AlignedBox2d on_map;
     for (const Eigen::Vector3d& corner : corners) on_map.extend(surface_.to_map(corner).head<2>());
     if (!on_map.intersects(around)) continue;
@@ -161,7 +167,8 @@ std::vector<std::vector<geometry::Ring>> MapLabels::parts_in(const PosedRays& ra
   pixels.clear();
   for (const Chunk& chunk : placed.chunks)
     if (pixels.cone().may_meet(chunk.centre, chunk.radius))
-      for (const std::uint32_t face : chunk.faces) pixels.add(corners_of(surface_.mesh(), face));
+      for (const std::uint32_t face : chunk.faces)
+        pixels.add(geometry::corners_of(surface_.mesh(), face));
   return geometry::region_outlines(pixels.grid(), [&](const Eigen::Vector2d& pixel) {
     if (!rays.is_in_photograph(pixel)) return false;
     const auto sight = rays.sight(pixel);

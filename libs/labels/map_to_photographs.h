@@ -25,7 +25,8 @@ struct SeenLabel {
 // Labels on a map. All functions may be called concurrently.
 class MapLabels {
  public:
-  // `labels`: [map]. `surface` must outlive the object. Errors of geometry::PolygonPieces.
+  // `labels`: [map]. `surface` must outlive the object. Error of geometry::PolygonPieces that
+  // names the first label with an error.
   MapLabels(const LabelledSurface& surface, std::span<const map::Label> labels);
 
   // The labels that a photograph shows, in their order.

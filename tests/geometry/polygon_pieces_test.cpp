@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -18,16 +19,6 @@ Ring star(const Eigen::Vector2d& centre, double inner, double outer, int corners
     ring.emplace_back(centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
   }
   return ring;
-}
-
-// Half the sum of cross products of neighbouring corners.
-double area_of(const Ring& ring) {
-  double sum = 0;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Eigen::Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
-    sum += a.x() * b.y() - a.y() * b.x();
-  }
-  return std::abs(sum) / 2;
 }
 
 // By the number of edges that a ray to the right crosses.
@@ -49,12 +40,22 @@ double area_of(std::span<const Eigen::Vector3d> corners) {
   return sum.norm() / 2;
 }
 
+TEST(PolygonPieces, RingsHaveSignedAreas) {
+  Ring ring{{0, 0}, {4, 0}, {4, 3}, {1, 1}, {0, 3}};
+  EXPECT_EQ(signed_area(ring), 8);
+  std::ranges::reverse(ring);
+  EXPECT_EQ(signed_area(ring), -8);
+  for (Eigen::Vector2d& corner : ring) corner += Eigen::Vector2d(5e5, 5e6);
+  EXPECT_EQ(signed_area(ring), -8);
+  EXPECT_EQ(signed_area({}), 0);
+}
+
 TEST(PolygonPieces, HaveTheAreaOfRingsWithoutHoles) {
   const std::vector<Ring> rings{star({0, 0}, 1, 2, 7), star({0.1, 0.1}, 0.3, 0.5, 5),
                                 star({6, 1}, 0.5, 1, 3)};
   EXPECT_FALSE(crossing_of(rings));
   EXPECT_NEAR(PolygonPieces(rings).area(),
-              area_of(rings[0]) - area_of(rings[1]) + area_of(rings[2]), 1e-12);
+              signed_area(rings[0]) - signed_area(rings[1]) + signed_area(rings[2]), 1e-12);
 }
 
 TEST(PolygonPieces, ContainThePointsInAnOddNumberOfRings) {

@@ -13,15 +13,6 @@ namespace {
 const Eigen::Vector2d kCentre(130.2, -40.7);
 constexpr double kStep = 0.5;
 
-double signed_area(const Ring& ring) {
-  double twice = 0;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Eigen::Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
-    twice += a.x() * b.y() - a.y() * b.x();
-  }
-  return twice / 2;
-}
-
 SampleGrid grid_around(double half) {
   const int count = static_cast<int>(2 * half / kStep) + 1;
   return {kCentre - Eigen::Vector2d(half, half), kStep, count, count};

@@ -26,15 +26,6 @@ std::vector<LabelledPhotograph> photographs() {
   return {{"left/a.jpg", 100, 80, {polygon, points}}, {"b.jpg", 64, 48, {points}}};
 }
 
-double area_of(const geometry::Ring& ring) {
-  double twice = 0;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Eigen::Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
-    twice += a.x() * b.y() - a.y() * b.x();
-  }
-  return std::abs(twice) / 2;
-}
-
 class Coco : public axial::test::FolderTest {
  protected:
   CocoLabels read(const std::string& text) const {
@@ -83,7 +74,7 @@ TEST_F(Coco, IsReadAsItWasWritten) {
   EXPECT_EQ(polygon.name, "a \"1\"");
   EXPECT_EQ(polygon.category, "coral");
   ASSERT_EQ(polygon.parts.size(), 2U);
-  EXPECT_NEAR(area_of(polygon.parts[0][0]), 375, 1e-9);  // without the hole
+  EXPECT_NEAR(std::abs(geometry::signed_area(polygon.parts[0][0])), 375, 1e-9);  // without the hole
   EXPECT_EQ(polygon.parts[1][0][1], Eigen::Vector2d(3.5, -0.5));
   ASSERT_EQ(again.photographs[1].labels.size(), 2U);
   EXPECT_LT((again.photographs[1].labels[1].points.at(0) - Eigen::Vector2d(7, 8)).norm(), 0.006);
