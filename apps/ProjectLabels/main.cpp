@@ -2,6 +2,7 @@
 // Carries labels from a map to the photographs that see them, and from photographs to the map.
 
 #include <algorithm>
+#include <optional>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -13,6 +14,7 @@
 #include "directions.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
+#include "map/label_file.h"
 #include "scene/check_mesh.h"
 
 namespace axial::apps {
@@ -30,6 +32,20 @@ void warn_of(const std::vector<std::string>& names, const std::string& what) {
   for (std::size_t i = 0; i < std::min(kMost, names.size()); ++i)
     log_warning("label '{}': {}", names[i], what);
   if (names.size() > kMost) log_warning("{} more labels: {}", names.size() - kMost, what);
+}
+
+GivenLabels read_given(const Settings& settings, const std::string& crs) {
+  constexpr std::size_t kMost = 65535;  // values of a mask of 16 bits
+  GivenLabels given;
+  if (settings.from_map.empty()) {
+    given.in_photographs = labels::read_coco(settings.from_photographs);
+    return given;
+  }
+  given.on_map = map::read_labels(settings.from_map, crs, settings.class_field);
+  const std::size_t classes = labels::categories_of(given.on_map).size();
+  if (!settings.masks.empty() && classes > kMost)
+    fail_in(settings.from_map, "has {} classes, but --masks can show {} at most", classes, kMost);
+  return given;
 }
 
 namespace {
@@ -52,18 +68,24 @@ int run(int argc, char** argv) {
   const Context context = program_context(options.parsed);
   const std::vector<std::filesystem::path> outputs = outputs_of(settings);
   const OutputLock lock = lock_output(outputs.front());
-  if (!settings.masks.empty()) require_writable_folder(settings.masks);
+  std::optional<OutputLock> masks_lock;
+  if (!settings.masks.empty()) {
+    masks_lock.emplace(settings.masks, LockUse::alone, ParentFolder::made);
+    require_writable_folder(settings.masks);
+  }
   survey::Survey survey = survey::open_scene(settings.survey, context);
+  survey.add_inputs(io::files_of_mesh(settings.mesh));
+  survey.add_inputs(std::vector{settings.from_map, settings.from_photographs, settings.place.map});
+  survey.keep_inputs(outputs, "--output-file");
   const map::MapPlace place = map::place_of(settings.place);
+  const GivenLabels given = read_given(settings, place.crs);
   const Mesh mesh = read_mesh(settings, survey.frame, context);
   belong::check_surface(survey.scene, belong::shape_of(mesh), {settings.mesh, survey.file()},
                         context);
   survey::find_photographs(survey, context);
-  survey.add_inputs(io::files_of_mesh(settings.mesh));
-  survey.add_inputs(std::vector{settings.from_map, settings.from_photographs, settings.place.map});
   survey.keep_inputs(outputs, "--output-file");
   const labels::LabelledSurface surface(mesh, survey.frame, place.axes);
-  const Ground ground{settings, survey, surface, place.crs};
+  const Ground ground{settings, given, survey, surface, place.crs};
   if (settings.from_map.empty())
     to_map(ground, context);
   else

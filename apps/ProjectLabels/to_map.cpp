@@ -84,8 +84,7 @@ bool is_empty(const labels::CarriedLabel& carried) {
 void to_map(const Ground& ground, const Context& context) {
   constexpr double kMuch = 0.1, kCoarse = 2;
   const Settings& settings = ground.settings;
-  const labels::CocoLabels coco = labels::read_coco(settings.from_photographs);
-  const std::vector<Drawn> drawn = drawn_labels(coco, ground);
+  const std::vector<Drawn> drawn = drawn_labels(ground.given.in_photographs, ground);
   std::vector<labels::CarriedLabel> carried = carried_labels(ground, drawn, context);
   if (std::ranges::all_of(carried, is_empty))
     fail_in(settings.mesh, "no label of {} lies on its surface",

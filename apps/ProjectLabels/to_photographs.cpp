@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cstdint>
-#include <map>
 #include <opencv2/core.hpp>
+#include <set>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -74,36 +77,64 @@ std::vector<labels::LabelledPhotograph> labelled(const Ground& ground,
   return photographs;
 }
 
-fs::path mask_name(const labels::LabelledPhotograph& photograph) {
-  return photograph.name + ".png";
+fs::path mask_name(const std::string& photograph) {
+  return photograph + ".png";
 }
 
 cv::Mat mask_of(const labels::LabelledPhotograph& photograph,
-                const std::map<std::string, int>& categories) {
+                const labels::Categories& categories) {
   cv::Mat1w mask(photograph.height, photograph.width, std::uint16_t{0});
   for (const map::Label& label : photograph.labels)
-    labels::fill(label.parts, static_cast<std::uint16_t>(categories.at(label.category)), mask);
+    labels::fill(label.parts, static_cast<std::uint16_t>(categories.at(label.category).id), mask);
   if (categories.size() > 255) return mask;
   cv::Mat1b bytes;
   mask.convertTo(bytes, CV_8U);
   return bytes;
 }
 
+// Warns of masks in the folder of photographs that see no label: they are of other labels.
+void warn_of_other_masks(const Ground& ground,
+                         std::span<const labels::LabelledPhotograph> photographs) {
+  std::set<fs::path> written;
+  for (const auto& photograph : photographs) written.insert(mask_name(photograph.name));
+  std::vector<fs::path> others;
+  for (const fs::path& name : survey::photograph_names(ground.survey)) {
+    const fs::path mask = mask_name(name.generic_string());
+    if (!written.contains(mask) && fs::exists(ground.settings.masks / mask)) others.push_back(mask);
+  }
+  if (!others.empty())
+    log_warning("{}: {} masks of photographs that see no label are of an earlier run, such as {}",
+                ground.settings.masks.string(), others.size(), others.front().string());
+}
+
 void write_masks(const Ground& ground, std::span<const labels::LabelledPhotograph> photographs,
-                 const Context& context) {
-  const fs::path& folder = ground.settings.masks;
-  std::vector<fs::path> files;
-  for (const auto& photograph : photographs) files.push_back(folder / mask_name(photograph));
-  require_no_inputs(files, ground.survey.inputs, "--masks");
-  const std::map<std::string, int> categories = labels::category_ids(photographs);
+                 const labels::Categories& categories, const Context& context) {
   ProgressCounter progress(context.stage("Writing masks"), photographs.size());
-  write_folder(folder, [&](const fs::path& staging) {
+  write_folder(ground.settings.masks, [&](const fs::path& staging) {
     for (const auto& photograph : photographs) {
-      const fs::path file = staging / mask_name(photograph);
+      const fs::path file = staging / mask_name(photograph.name);
       make_folder(file.parent_path());
       io::write_png(file, mask_of(photograph, categories));
       progress.add();
     }
+  });
+  warn_of_other_masks(ground, photographs);
+}
+
+// The masks are moved to their folder when the text is on the disk, so that a failure leaves both
+// as they were.
+void write(const Ground& ground, std::span<const labels::LabelledPhotograph> photographs,
+           const Context& context) {
+  const fs::path file = outputs_of(ground.settings).front(), folder = ground.settings.masks;
+  const labels::Categories categories = labels::categories_of(ground.given.on_map);
+  const std::string text = labels::coco_text(photographs, categories);
+  if (folder.empty()) return write_atomically(file, text);
+  std::vector<fs::path> masks;
+  for (const auto& photograph : photographs) masks.push_back(folder / mask_name(photograph.name));
+  require_no_inputs(masks, ground.survey.inputs, "--masks");
+  write_together({file}, [&](const std::vector<fs::path>& temporaries) {
+    write_atomically(temporaries.front(), text);
+    write_masks(ground, photographs, categories, context);
   });
 }
 
@@ -111,18 +142,15 @@ void write_masks(const Ground& ground, std::span<const labels::LabelledPhotograp
 
 void to_photographs(const Ground& ground, const Context& context) {
   const Settings& settings = ground.settings;
-  const std::vector<map::Label> labels =
-      map::read_labels(settings.from_map, ground.crs, settings.class_field);
+  const std::vector<map::Label>& labels = ground.given.on_map;
   const labels::MapLabels placed =
       naming(settings.from_map, [&] { return labels::MapLabels(ground.surface, labels); });
   auto seen = seen_labels(ground, placed, context);
   const std::size_t count = count_seen(ground, labels, placed, seen);
   const std::vector<labels::LabelledPhotograph> photographs = labelled(ground, std::move(seen));
-  if (!settings.masks.empty()) write_masks(ground, photographs, context);
-  const fs::path file = outputs_of(settings).front();
-  write_atomically(file, labels::coco_text(photographs));
+  write(ground, photographs, context);
   log_info("{} of {} labels are in {} of {} photographs: {}", count, labels.size(),
-           photographs.size(), ground.survey.views.size(), file.string());
+           photographs.size(), ground.survey.views.size(), outputs_of(settings).front().string());
 }
 
 }  // namespace axial::apps

@@ -35,12 +35,21 @@ struct CocoLabels {
 // 1e6.
 CocoLabels read_coco(const std::filesystem::path& file);
 
-// The ids of the classes of labels, from 1, in the order of the alphabet.
-std::map<std::string, int> category_ids(std::span<const LabelledPhotograph> photographs);
+// A class of labels in a file.
+struct Category {
+  int id = 0;
+  bool has_points = false;
+};
+using Categories = std::map<std::string, Category>;
 
-// The text of a file: an image for each photograph, and annotations with polygons, each with its
-// bounding box and area, and a key point for each point. Numbers are rounded to 0.01 px. COCO's
-// polygons have no holes: a hole is joined to the outline by a line there and back.
-std::string coco_text(std::span<const LabelledPhotograph> photographs);
+// The classes of labels. Their ids are numbers from 1 in the order of the alphabet.
+Categories categories_of(std::span<const map::Label> labels);
+
+// The text of a file: an image for each photograph, all categories, and annotations with polygons,
+// each with its bounding box and area, and a key point for each point. Numbers are rounded to
+// 0.01 px. COCO's polygons have no holes: a hole is joined to the outline by a line there and back.
+// Precondition: `categories` has the classes of all labels.
+std::string coco_text(std::span<const LabelledPhotograph> photographs,
+                      const Categories& categories);
 
 }  // namespace axial::labels

@@ -85,7 +85,7 @@ std::string list_of(const std::vector<Json>& entries) {
 // Collects annotations with consecutive ids.
 class Annotations {
  public:
-  explicit Annotations(const std::map<std::string, int>& categories) : categories_(categories) {}
+  explicit Annotations(const Categories& categories) : categories_(categories) {}
 
   void add(const map::Label& label, int image) {
     if (!label.parts.empty()) add(label, image, polygons_of(label));
@@ -98,50 +98,46 @@ class Annotations {
   void add(const map::Label& label, int image, const Json& shape) {
     Json entry{{"id", all_.size() + 1},
                {"image_id", image},
-               {"category_id", categories_.at(label.category)}};
+               {"category_id", categories_.at(label.category).id}};
     entry.update(shape);
     entry["iscrowd"] = 0;
     entry["attributes"]["name"] = label.name;
     all_.push_back(std::move(entry));
   }
 
-  const std::map<std::string, int>& categories_;
+  const Categories& categories_;
   std::vector<Json> all_;
 };
 
-std::vector<Json> categories_of(std::span<const LabelledPhotograph> photographs,
-                                const std::map<std::string, int>& ids) {
-  std::map<std::string, bool> has_points;
-  for (const LabelledPhotograph& photograph : photographs)
-    for (const map::Label& label : photograph.labels)
-      has_points[label.category] = has_points[label.category] || !label.points.empty();
-  std::vector<Json> categories;
-  for (const auto& [name, id] : ids) {
-    Json entry{{"id", id}, {"name", name}, {"supercategory", ""}};
-    if (has_points[name]) {
+std::vector<Json> entries_of(const Categories& categories) {
+  std::vector<Json> entries;
+  for (const auto& [name, category] : categories) {
+    Json entry{{"id", category.id}, {"name", name}, {"supercategory", ""}};
+    if (category.has_points) {
       entry["keypoints"] = Json::array({"point"});
       entry["skeleton"] = Json::array();
     }
-    categories.push_back(std::move(entry));
+    entries.push_back(std::move(entry));
   }
-  return categories;
+  return entries;
 }
 
 }  // namespace
 
-std::map<std::string, int> category_ids(std::span<const LabelledPhotograph> photographs) {
-  std::map<std::string, int> ids;
-  for (const LabelledPhotograph& photograph : photographs)
-    for (const map::Label& label : photograph.labels) ids[label.category] = 0;
+Categories categories_of(std::span<const map::Label> labels) {
+  Categories categories;
+  for (const map::Label& label : labels)
+    if (Category& category = categories[label.category]; !label.points.empty())
+      category.has_points = true;
   int last = 0;
-  for (auto& [name, id] : ids) id = ++last;
-  return ids;
+  for (auto& [name, category] : categories) category.id = ++last;
+  return categories;
 }
 
-std::string coco_text(std::span<const LabelledPhotograph> photographs) {
-  const std::map<std::string, int> ids = category_ids(photographs);
+std::string coco_text(std::span<const LabelledPhotograph> photographs,
+                      const Categories& categories) {
   std::vector<Json> images;
-  Annotations annotations(ids);
+  Annotations annotations(categories);
   for (const LabelledPhotograph& photograph : photographs) {
     const int id = static_cast<int>(images.size()) + 1;
     images.push_back({{"id", id},
@@ -154,7 +150,7 @@ std::string coco_text(std::span<const LabelledPhotograph> photographs) {
       {"description", "labels of AxialMVS; (0, 0) is the outer corner of the first pixel"}};
   return "{\"info\": " + io::to_text(info) + ",\n\"images\": " + list_of(images) +
          ",\n\"annotations\": " + list_of(annotations.all()) +
-         ",\n\"categories\": " + list_of(categories_of(photographs, ids)) + "}\n";
+         ",\n\"categories\": " + list_of(entries_of(categories)) + "}\n";
 }
 
 }  // namespace axial::labels

@@ -46,7 +46,7 @@ class LabelsTest(Wall):
         write(self.path("work", "plots.geojson"),
               features(shape("Polygon", ring(PLOT), name="plot", **{"class": "coral"}),
                        shape("Point", [0.02, 0.1], name="dot", **{"class": "alga"}),
-                       shape("Polygon", ring([(5, 5), (6, 5), (6, 6)]), name="far", **{"class": "coral"})))
+                       shape("Polygon", ring([(5, 5), (6, 5), (6, 6)]), name="far", **{"class": "anemone"})))
 
     def project(self, direction, labels, *more, up=("--up", "0,0,-1")):
         return self.command("ProjectLabels", "--" + direction, labels, *up, "-o", "out", *more)
@@ -69,6 +69,8 @@ class ToPhotographs(LabelsTest):
         self.assertEqual(made, {"out.json"})
         self.assertIn("label 'far': the mesh has no surface there", said)
         self.assertIn("2 of 3 labels are in 3 of 3 photographs", said)
+        self.assertEqual([(entry["id"], entry["name"]) for entry in json.loads(self.at("out.json"))["categories"]],
+                         [(1, "alga"), (2, "anemone"), (3, "coral")])  # also the class that nobody sees
         polygons, points = self.annotations("coral"), self.annotations("alga")
         self.assertEqual(set(polygons), set(names()))
         for name, centre in zip(names(), CENTRES):

@@ -26,6 +26,13 @@ std::vector<LabelledPhotograph> photographs() {
   return {{"left/a.jpg", 100, 80, {polygon, points}}, {"b.jpg", 64, 48, {points}}};
 }
 
+std::string text_of(const std::vector<LabelledPhotograph>& photographs) {
+  std::vector<map::Label> labels;
+  for (const LabelledPhotograph& photograph : photographs)
+    labels.insert(labels.end(), photograph.labels.begin(), photograph.labels.end());
+  return coco_text(photographs, categories_of(labels));
+}
+
 class Coco : public axial::test::FolderTest {
  protected:
   CocoLabels read(const std::string& text) const {
@@ -35,7 +42,7 @@ class Coco : public axial::test::FolderTest {
   std::string error(const nlohmann::json& json) const {
     return axial::test::error_of([&] { read(json.dump()); });
   }
-  static nlohmann::json valid() { return nlohmann::json::parse(coco_text(photographs())); }
+  static nlohmann::json valid() { return nlohmann::json::parse(text_of(photographs())); }
 };
 
 TEST_F(Coco, HasTheFieldsOfTheFormat) {
@@ -63,8 +70,20 @@ TEST_F(Coco, HasTheFieldsOfTheFormat) {
   EXPECT_EQ(json["annotations"][4]["image_id"], 2);
 }
 
+// So a category keeps its id, whichever labels the photographs see.
+TEST_F(Coco, HasTheCategoriesOfAllLabels) {
+  const std::vector<map::Label> labels{{"1", "sponge", {}, {}}, {"2", "alga", {}, {{1, 2}}}};
+  const std::vector<LabelledPhotograph> photographs{{"a.jpg", 9, 9, {{"1", "sponge", {}, {}}}}};
+  const auto json = nlohmann::json::parse(coco_text(photographs, categories_of(labels)));
+  ASSERT_EQ(json["categories"].size(), 2U);
+  EXPECT_EQ(json["categories"][0]["name"], "alga");
+  EXPECT_TRUE(json["categories"][0].contains("keypoints"));
+  EXPECT_EQ(json["categories"][1]["name"], "sponge");
+  EXPECT_EQ(json["categories"][1]["id"], 2);
+}
+
 TEST_F(Coco, IsReadAsItWasWritten) {
-  const CocoLabels again = read(coco_text(photographs()));
+  const CocoLabels again = read(text_of(photographs()));
   EXPECT_EQ(again.left_out, 0U);
   ASSERT_EQ(again.photographs.size(), 2U);
   EXPECT_EQ(again.photographs[0].name, "left/a.jpg");
