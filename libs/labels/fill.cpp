@@ -9,8 +9,16 @@ namespace axial::labels {
 
 void fill(const std::vector<std::vector<geometry::Ring>>& parts, std::uint16_t value,
           cv::Mat1w& mask) {
+  double low = mask.rows, high = -1;
+  for (const auto& part : parts)
+    for (const geometry::Ring& ring : part)
+      for (const Eigen::Vector2d& corner : ring) {
+        low = std::min(low, corner.y());
+        high = std::max(high, corner.y());
+      }
+  const int last = static_cast<int>(std::floor(std::min(high, mask.rows - 1.0)));
   std::vector<double> crossings;
-  for (int y = 0; y < mask.rows; ++y) {
+  for (int y = static_cast<int>(std::ceil(std::max(low, 0.0))); y <= last; ++y) {
     crossings.clear();
     for (const auto& part : parts)
       for (const geometry::Ring& ring : part)
