@@ -16,6 +16,7 @@ namespace axial::boundary {
 namespace {
 
 using geometry::Ring;
+using geometry::signed_area;
 using testing::HasSubstr;
 
 constexpr int kSide = 20;  // squares along each side of a grid
@@ -82,15 +83,6 @@ Ring star(const Eigen::Vector2d& centre, double inner, double outer, int corners
     ring.emplace_back(centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
   }
   return ring;
-}
-
-double area_of(const Ring& ring) {
-  double sum = 0;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Eigen::Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
-    sum += a.x() * b.y() - a.y() * b.x();
-  }
-  return std::abs(sum) / 2;
 }
 
 // By the number of sides that a ray to the right crosses.
@@ -176,7 +168,10 @@ TEST(CutMesh, ALevelPlaneHasTheAreaOfThePolygons) {
   mark_outside(mesh, boundary_of({{outer, hole}, {other}}));
   remove_outside(mesh);
   EXPECT_TRUE(mesh.unseen.empty());
-  EXPECT_NEAR(areas_of(mesh).plan, area_of(outer) - area_of(hole) + area_of(other), kAreaError);
+  EXPECT_NEAR(
+      areas_of(mesh).plan,
+      std::abs(signed_area(outer)) - std::abs(signed_area(hole)) + std::abs(signed_area(other)),
+      kAreaError);
 }
 
 // Corners at vertices, sides along edges, through vertices and along diagonals.
@@ -188,7 +183,7 @@ TEST(CutMesh, APolygonOnTheLinesOfAGridAddsNoVertices) {
   EXPECT_EQ(mesh.vertices.size(), vertices);
   EXPECT_EQ(mesh.faces.size(), faces);
   remove_outside(mesh);
-  EXPECT_NEAR(areas_of(mesh).plan, area_of(ring), kAreaError);
+  EXPECT_NEAR(areas_of(mesh).plan, std::abs(signed_area(ring)), kAreaError);
 }
 
 TEST(CutMesh, OverlappingPolygonsAreJoined) {
