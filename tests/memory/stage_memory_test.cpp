@@ -210,7 +210,9 @@ Work writing_pinhole_model() {
   const cloud::PinholeView view{large_camera(), Eigen::Vector3d::Zero(), true};
   const cv::Size size(view.camera.width, view.camera.height);
   for (std::size_t i = 0; i < 4; ++i)
-    points->find(i, view, {cv::Mat3b(size, cv::Vec3b()), cv::Mat1b(size, cloud::kExact)});
+    points->find(i, view,
+                 {cv::Mat3b(size, cv::Vec3b()), cv::Mat1b(size, cloud::kExact),
+                  cv::Mat1b(size, std::uint8_t{255})});
   return {densify::bytes_needed_for_pinhole_model(*scene), [scene, points] {
             Scene exported;
             exported.images = scene->images;
