@@ -29,6 +29,24 @@ class Samples {
     });
   }
 
+  // Samples at half the step of `coarse`, in the grid halved(). A place between samples that agree
+  // is as they are: it is not looked at.
+  Samples(const SampleGrid& grid, const Samples& coarse)
+      : grid_(grid),
+        is_inside_(coarse.is_inside_),
+        inside_(grid.rows + 2, grid.columns + 2, uchar{0}) {
+    parallel_for(static_cast<std::size_t>(grid.rows), [&](std::size_t row) {
+      const int y = static_cast<int>(row);
+      for (int x = 0; x < grid.columns; ++x) {
+        const cv::Point low(x / 2, y / 2), high((x + 1) / 2, (y + 1) / 2);
+        const bool first = coarse.at(low);
+        const bool agree = first == coarse.at(high) && first == coarse.at({high.x, low.y}) &&
+                           first == coarse.at({low.x, high.y});
+        inside_(y + 1, x + 1) = (agree ? first : is_inside_(grid.at(x, y))) ? 255 : 0;
+      }
+    });
+  }
+
   // -1 and the number of columns or rows are the rim.
   bool at(cv::Point sample) const { return inside_(sample.y + 1, sample.x + 1) != 0; }
 
@@ -52,7 +70,7 @@ class Samples {
   }
 
  private:
-  const SampleGrid& grid_;
+  SampleGrid grid_;
   const IsInside& is_inside_;
   cv::Mat1b inside_;
 };
@@ -175,6 +193,13 @@ SampleGrid grown(SampleGrid grid) {
   return grid;
 }
 
+SampleGrid halved(SampleGrid grid) {
+  grid.step /= 2;
+  grid.columns = 2 * grid.columns - 1;
+  grid.rows = 2 * grid.rows - 1;
+  return grid;
+}
+
 double samples_of(const SampleGrid& grid) {
   return static_cast<double>(grid.columns) * grid.rows;
 }
@@ -189,15 +214,17 @@ std::vector<std::vector<Ring>> region_outlines(SampleGrid grid, const IsInside& 
     grid = grown(grid);
     samples.emplace(grid, is_inside);
   }
+  const SampleGrid half = halved(grid);
+  const Samples fine(half, *samples);
   std::vector<Outline> outlines, holes;
-  Segments(*samples, grid).each_line([&](const std::vector<Crossing>& crossings) {
-    Outline outline = outline_of(crossings, *samples);
+  Segments(fine, half).each_line([&](const std::vector<Crossing>& crossings) {
+    Outline outline = outline_of(crossings, fine);
     // A line that turns around when it is simplified is thinner than the error.
     if (outline.corners.size() < 3 || !(outline.area * cv::contourArea(outline.corners, true) > 0))
       return;
     (outline.area < 0 ? holes : outlines).push_back(std::move(outline));
   });
-  return parts_of(outlines, holes, grid);
+  return parts_of(outlines, holes, half);
 }
 
 }  // namespace axial::geometry

@@ -26,12 +26,13 @@ using IsInside = std::function<bool(const Eigen::Vector2d& place)>;
 // right and y upwards, and then the holes, with negative area.
 //
 // The region is sampled at the grid; a piece between the samples is not found. While a sample at
-// the rim of the grid is inside, the grid grows, up to `most` samples. Between two neighbouring
-// samples, of which one is inside, the place of the outline is found by bisection, up to 1/128 of a
-// step on the side of the region. Between these places the outline is straight (marching squares);
-// samples that touch at a corner alone are apart. Corners that lie nearer than a fiftieth of a step
-// to the straight line between others are left out. Rings with fewer than three corners are left
-// out.
+// the rim of the grid is inside, the grid grows, up to `most` samples. Around the outline, samples
+// follow at half a step. Between two neighbouring samples, of which one is inside, the place of the
+// outline is found by bisection, up to 1/256 of a step on the side of the region. Between these
+// places the outline is straight (marching squares), so that a right angle is cut by up to 0.36 of
+// a step; samples that touch at a corner alone are apart. Corners that lie nearer than a hundredth
+// of a step to the straight line between others are left out. Rings with fewer than three corners
+// are left out.
 std::vector<std::vector<Ring>> region_outlines(SampleGrid grid, const IsInside& is_inside,
                                                double most = 64e6);
 

@@ -35,7 +35,7 @@ class MapLabels {
   // polygon. So parts are cut off that other parts of the mesh hide or that are outside the
   // photograph, and sides below an overhang belong to the polygon around them. The outline is that
   // of geometry::region_outlines() with the pixels as samples: it is off by some hundredths of a
-  // pixel where it is smooth, and cuts right angles by up to 0.71 px. A point lies on the highest
+  // pixel where it is smooth, and cuts right angles by up to 0.36 px. A point lies on the highest
   // surface. It is seen if no face hides it (LabelledSurface::pixel_of()).
   std::vector<SeenLabel> seen_in(const PosedRays& rays) const;
 

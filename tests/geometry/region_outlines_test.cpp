@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -22,7 +23,7 @@ double radius_at(const Eigen::Vector2d& place) {
   return (place - kCentre).norm();
 }
 
-// Corners lie on the circle up to the bisection. Between them, lines leave out a fiftieth of a
+// Corners lie on the circle up to the bisection. Between them, lines leave out a hundredth of a
 // step, and a line across a square between samples the sagitta of its diagonal.
 void expect_circle(const Ring& ring, double radius) {
   const double sagitta = 2 * kStep * kStep / (8 * radius);
@@ -89,6 +90,28 @@ TEST(RegionOutlines, OfSquaresThatTouchAtACornerAreApart) {
   for (const auto& part : parts) {
     ASSERT_EQ(part.size(), 1U);
     EXPECT_GT(signed_area(part[0]), 3.5 * 3.5);
+  }
+}
+
+// Half the diagonal of a square of half a step is 0.354 of a step.
+TEST(RegionOutlines, CutRightAnglesByLittle) {
+  for (int i = 0; i < 20; ++i) {
+    const double turn = 0.37 * i;
+    const Eigen::Rotation2Dd back(-turn);
+    const auto parts = region_outlines(grid_around(8), [&](const Eigen::Vector2d& place) {
+      return (back * (place - kCentre)).cwiseAbs().maxCoeff() < 4.1;
+    });
+    ASSERT_EQ(parts.size(), 1U);
+    const Ring& ring = parts[0][0];
+    for (const double x : {-4.1, 4.1})
+      for (const double y : {-4.1, 4.1}) {
+        const Eigen::Vector2d corner = kCentre + Eigen::Rotation2Dd(turn) * Eigen::Vector2d(x, y);
+        double nearest = 1;
+        for (const Eigen::Vector2d& place : ring)
+          nearest = std::min(nearest, (place - corner).norm());
+        // The nearest corner of the ring is at most a side of such a square away.
+        EXPECT_LT(nearest, kStep / 2 + kStep / 100);
+      }
   }
 }
 

@@ -122,7 +122,7 @@ TEST(MapLabels, LieWhereTheCameraSeesThem) {
     for (const Eigen::Vector2d& corner : found) EXPECT_LT(distance_to(image, corner), 0.02);
     double sum = 0;
     for (const Eigen::Vector2d& place : image) {
-      EXPECT_LT(distance_to(found, place), 0.75);  // a right angle is cut by up to 0.71 px
+      EXPECT_LT(distance_to(found, place), 0.4);  // a right angle is cut by up to 0.36 px
       sum += distance_to(found, place);
     }
     EXPECT_LT(sum / static_cast<double>(image.size()), 0.06);
@@ -195,7 +195,7 @@ TEST(CarriedLabels, ComeBackToTheMap) {
   ASSERT_EQ(back.label.parts.size(), 1U);
   ASSERT_EQ(back.label.parts[0].size(), 1U);
   const geometry::Ring &first = label.parts[0][0], &again = back.label.parts[0][0];
-  // Both outlines cut right angles by up to 0.71 px.
+  // Both outlines cut right angles by up to 0.36 px.
   for (const Eigen::Vector2d& place : along(again))
     EXPECT_LT(distance_to(first, place), 1.1 * kPixel);
   for (const Eigen::Vector2d& place : along(first))
