@@ -83,7 +83,7 @@ int run(int argc, char** argv) {
   belong::check_surface(survey.scene, belong::shape_of(mesh), {settings.mesh, survey.file()},
                         context);
   survey::find_photographs(survey, context);
-  survey.keep_inputs(outputs, "--output-file");
+  survey.keep_inputs(outputs, "--output-file");  // the photographs are inputs, too
   const labels::LabelledSurface surface(mesh, survey.frame, place.axes);
   const Ground ground{settings, given, survey, surface, place.crs};
   if (settings.from_map.empty())

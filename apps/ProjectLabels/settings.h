@@ -13,7 +13,7 @@ namespace axial::apps {
 struct Settings {
   survey::Options survey;
   std::filesystem::path mesh;
-  // The labels. One of them is empty.
+  // The files of labels. Exactly one of the two paths is empty.
   std::filesystem::path from_map, from_photographs;
   map::PlaceOptions place;
   std::filesystem::path output;  // the names of the files without their extensions

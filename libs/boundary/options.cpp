@@ -9,15 +9,9 @@ namespace {
 
 constexpr std::size_t kLeastTargets = 3;
 
-std::string without_blanks_around(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
-  return first == std::string_view::npos ? "" : std::string(text.substr(first, last - first + 1));
-}
-
 std::vector<std::string> labels_of(const std::string& text) {
   std::vector<std::string> labels;
-  for (const std::string_view part : split(text, ','))
-    labels.push_back(without_blanks_around(part));
+  for (const std::string_view part : split(text, ',')) labels.emplace_back(trimmed(part));
   for (const std::string& label : labels)
     if (label.empty()) fail("--boundary-targets {}: has an empty label", text);
   if (labels.size() < kLeastTargets)

@@ -11,12 +11,15 @@
 #include <random>
 
 #include "support/error_of.h"
+#include "support/rings.h"
 
 namespace axial::boundary {
 namespace {
 
 using geometry::Ring;
 using geometry::signed_area;
+using test::is_inside;
+using test::star;
 using testing::HasSubstr;
 
 constexpr int kSide = 20;  // squares along each side of a grid
@@ -74,27 +77,6 @@ Mesh ball() {
     }
   }
   return mesh;
-}
-
-Ring star(const Eigen::Vector2d& centre, double inner, double outer, int corners) {
-  Ring ring;
-  for (int i = 0; i < 2 * corners; ++i) {
-    const double angle = 0.1 + std::numbers::pi * i / corners, radius = i % 2 ? inner : outer;
-    ring.emplace_back(centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
-  }
-  return ring;
-}
-
-// By the number of sides that a ray to the right crosses.
-bool is_inside(const Ring& ring, const Eigen::Vector2d& place) {
-  bool inside = false;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Eigen::Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
-    if ((a.y() > place.y()) != (b.y() > place.y()) &&
-        place.x() < a.x() + (place.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
-      inside = !inside;
-  }
-  return inside;
 }
 
 double distance_to(const Ring& ring, const Eigen::Vector2d& place) {

@@ -9,29 +9,13 @@
 #include <numbers>
 #include <random>
 
+#include "support/rings.h"
+
 namespace axial::geometry {
 namespace {
 
-Ring star(const Eigen::Vector2d& centre, double inner, double outer, int corners) {
-  Ring ring;
-  for (int i = 0; i < 2 * corners; ++i) {
-    const double angle = 0.1 + std::numbers::pi * i / corners, radius = i % 2 ? inner : outer;
-    ring.emplace_back(centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
-  }
-  return ring;
-}
-
-// By the number of edges that a ray to the right crosses.
-bool is_inside(const Ring& ring, const Eigen::Vector2d& place) {
-  bool inside = false;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Eigen::Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
-    if ((a.y() > place.y()) != (b.y() > place.y()) &&
-        place.x() < a.x() + (place.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
-      inside = !inside;
-  }
-  return inside;
-}
+using test::is_inside;
+using test::star;
 
 double area_of(std::span<const Eigen::Vector3d> corners) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
