@@ -182,21 +182,24 @@ function(axial_set_up_test target)
   endif()
 endfunction()
 
-# add_axial_tests(io TESTS dmap_test ply_test [APART json_test] LINK io)
-# adds tests/io/dmap_test.cpp, ... as one program, and their tests as the CTest cases
-# "io/Suite.Test", or with the sanitizers "sanitized/io/Suite.Test". APART: see "Unity builds" above.
+# add_axial_tests(io TESTS dmap_test ply_test [APART json_test] [SHARDS 4] LINK io)
+# adds tests/io/dmap_test.cpp, ... as one program and as the CTest case "io", or with the sanitizers
+# "sanitized/io". APART: see "Unity builds" above. SHARDS: GoogleTest divides the tests of a long
+# program among this many CTest cases, "io/1of4" to "io/4of4", which CTest runs in parallel. A CTest
+# case has many tests, because the start of a program takes longer than most of them.
 #
 # add_axial_test(io/ply_test LINK io [SOURCES extra.cpp] [PROGRAMS InterfaceCOLMAP] [LABELS unit]
-#                [BUILD release] [TIMEOUT 300] [PRIVATE_OF io])
+#                [BUILD release] [SHARDS 4 | EACH] [TIMEOUT 900] [PRIVATE_OF io])
 # adds tests/io/ply_test.cpp as a program of its own, for a test that needs one of the options. Its
-# CTest cases are "io/ply_test/Suite.Test". PROGRAMS are the programs that the test runs; they are
-# built first. A test of LABELS unit (the default) is built in the build of its folder (see above),
+# CTest case is "io/ply_test". EACH: each test is a CTest case, "io/ply_test/Suite.Test", in a process
+# of its own, for tests that measure their process. PROGRAMS are the programs that the test runs; they
+# are built first. A test of LABELS unit (the default) is built in the build of its folder (see above),
 # or in the build that BUILD names (release or sanitized); with AXIAL_EVERY_TEST in both builds.
 # Tests with other labels are only built in release. PRIVATE_OF names the library whose private
 # headers the test may include.
 add_custom_target(axial_tests)
 function(add_axial_tests folder)
-  cmake_parse_arguments(ARG "" "" "TESTS;APART;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "SHARDS" "TESTS;APART;LINK" ${ARGN})
   axial_builds_test(here ${folder} unit)
   if(NOT here)
     return()
@@ -205,11 +208,11 @@ function(add_axial_tests folder)
   list(TRANSFORM ARG_APART APPEND .cpp)
   axial_add_test_program(${folder}_tests SOURCES ${ARG_TESTS} ${ARG_APART} LINK ${ARG_LINK})
   axial_unity(${folder}_tests ${ARG_APART})
-  axial_discover_tests(${folder}_tests ${folder} LABELS unit)
+  axial_add_cases(${folder}_tests ${folder} LABELS unit SHARDS ${ARG_SHARDS})
 endfunction()
 
 function(add_axial_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT;BUILD;PRIVATE_OF" "SOURCES;LINK;PROGRAMS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "EACH" "TIMEOUT;BUILD;PRIVATE_OF;SHARDS" "SOURCES;LINK;PROGRAMS;LABELS" ${ARGN})
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
   endif()
@@ -227,7 +230,11 @@ function(add_axial_test name)
   if(ARG_PROGRAMS)
     add_dependencies(${target} ${ARG_PROGRAMS})
   endif()
-  axial_discover_tests(${target} ${name} LABELS ${ARG_LABELS} TIMEOUT ${ARG_TIMEOUT})
+  if(ARG_EACH)
+    axial_discover_cases(${target} ${name} LABELS ${ARG_LABELS})
+  else()
+    axial_add_cases(${target} ${name} LABELS ${ARG_LABELS} TIMEOUT ${ARG_TIMEOUT} SHARDS ${ARG_SHARDS})
+  endif()
 endfunction()
 
 # Sets `result` to true if this build has the tests of `folder` with these labels. The optional
@@ -260,16 +267,42 @@ function(axial_add_test_program target)
   add_dependencies(axial_tests ${target})
 endfunction()
 
-# The CTest cases are "`name`/Suite.Test".
-function(axial_discover_tests target name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS" ${ARGN})
+# The CTest case is `name`, or the cases are "`name`/1ofN" to "`name`/NofN" of N shards.
+function(axial_add_cases target name)
+  cmake_parse_arguments(ARG "" "TIMEOUT;SHARDS" "LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 300)
+    set(ARG_TIMEOUT 900)
   endif()
+  if(NOT ARG_SHARDS)
+    set(ARG_SHARDS 1)
+  endif()
+  if(AXIAL_SANITIZE)
+    string(PREPEND name "sanitized/")
+  endif()
+  set(cost 10)
+  if(ARG_SHARDS GREATER 1)
+    set(cost 50)
+  endif()
+  foreach(shard RANGE 1 ${ARG_SHARDS})
+    set(case ${name})
+    if(ARG_SHARDS GREATER 1)
+      string(APPEND case /${shard}of${ARG_SHARDS})
+    endif()
+    math(EXPR index "${shard} - 1")
+    add_test(NAME ${case} COMMAND ${target} --gtest_brief=1)
+    # CTest starts the tests with the highest cost first; see tests/apps/CMakeLists.txt.
+    set_tests_properties(${case} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT} COST ${cost}
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index}")
+  endforeach()
+endfunction()
+
+# The CTest cases are "`name`/Suite.Test".
+function(axial_discover_cases target name)
+  cmake_parse_arguments(ARG "" "" "LABELS" ${ARGN})
   if(AXIAL_SANITIZE)
     string(PREPEND name "sanitized/")
   endif()
   # With a sanitizer, on a busy machine, listing the cases can take longer than the default of 5 s.
   gtest_discover_tests(${target} TEST_PREFIX "${name}/" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
-    PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
+    PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 300)
 endfunction()

@@ -29,7 +29,7 @@ struct Experiment {
 };
 
 // The experiments of the paper's figures and run times. `quick`: the same parts with fewer samples,
-// for tests.
+// for tests. The quick figure 4 has images of real size for five setups only.
 Experiment figure2(bool quick);  // errors of round trips through the port (projection_error.h)
 Experiment runtime(bool quick);  // times of projections (projection_time.h)
 Experiment figure3(bool quick);  // errors of every texel of every patch (patch_error.h)

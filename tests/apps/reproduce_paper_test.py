@@ -69,7 +69,7 @@ class Quick(unittest.TestCase):
 
     def test_patch_errors(self):
         parts = self.results("figure4")
-        self.assertEqual(len(parts), 2 * 2 * 15)
+        self.assertEqual(len(parts), 2 * (15 + 5))
         for name, part in parts.items():
             warps = {warp: values["mean"] for warp, values in part["warps"].items()}
             self.assertGreater(part["centres"], 100, name)

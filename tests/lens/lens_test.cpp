@@ -156,9 +156,9 @@ RC_GTEST_PROP(Lens, NoPixelOfTheUndistortedImageIsEmpty, ()) {
   const ColmapCamera camera{
       1,
       "OPENCV",
-      160,
-      120,
-      {175, 160, 82, 59, within(0.3), within(0.05), within(0.002), within(0.002)}};
+      80,
+      60,
+      {87.5, 80, 41, 29.5, within(0.3), within(0.05), within(0.002), within(0.002)}};
   const auto lens = pinhole_inside(lens_of(camera)).value();
   double nearest = 1e9;
   const cv::Mat2f map = undistortion_map(lens_of(camera), lens);
@@ -167,8 +167,8 @@ RC_GTEST_PROP(Lens, NoPixelOfTheUndistortedImageIsEmpty, ()) {
       const cv::Vec2f p = map(y, x);
       // pinhole_inside checks 64 positions on each side; between them the border may bulge a
       // little.
-      RC_ASSERT(p[0] > -0.1f && p[1] > -0.1f && p[0] < 159.1f && p[1] < 119.1f);
-      nearest = std::min<double>({nearest, p[0], p[1], 159 - p[0], 119 - p[1]});
+      RC_ASSERT(p[0] > -0.1f && p[1] > -0.1f && p[0] < 79.1f && p[1] < 59.1f);
+      nearest = std::min<double>({nearest, p[0], p[1], 79 - p[0], 59 - p[1]});
     }
   // The pinhole is zoomed out as far as possible: some pixel touches the border of the photograph.
   RC_ASSERT(nearest < 0.1);
