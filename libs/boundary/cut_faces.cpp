@@ -9,14 +9,11 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/plane_cross.h"
 #include "boundary/sides.h"
 
 namespace axial::boundary {
 namespace {
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 // A vertex, as a corner of the pieces of one face.
 struct Corner {
@@ -47,8 +44,8 @@ std::optional<OnEdge> crossing(const Corner& a, const Corner& b, const Side& sid
   const Eigen::Vector2d along = side.to - side.from;
   const double length = along.norm();
   if (!(length > 0)) return {};
-  const double left_a = cross(along, a.plan - side.from) / length;
-  const double left_b = cross(along, b.plan - side.from) / length;
+  const double left_a = plane_cross(along, a.plan - side.from) / length;
+  const double left_b = plane_cross(along, b.plan - side.from) / length;
   if (std::min(left_a, left_b) > -kSame || std::max(left_a, left_b) < kSame) return {};
   const double share = left_a / (left_a - left_b);
   const Eigen::Vector2d place = a.plan + share * (b.plan - a.plan);
@@ -61,7 +58,7 @@ std::optional<OnEdge> crossing(const Corner& a, const Corner& b, const Side& sid
 std::optional<OnEdge> touch(const Corner& a, const Corner& b, const Eigen::Vector2d& place) {
   const Eigen::Vector2d edge = b.plan - a.plan, from_a = place - a.plan;
   const double length = edge.norm();
-  if (!(length > 2 * kSame) || std::abs(cross(edge, from_a)) > kSame * length) return {};
+  if (!(length > 2 * kSame) || std::abs(plane_cross(edge, from_a)) > kSame * length) return {};
   const double at = edge.dot(from_a) / length;
   if (at <= kSame || at >= length - kSame) return {};
   return OnEdge{place, at / length};
@@ -194,9 +191,9 @@ class FaceCutter {
     for (std::size_t f = 0; f < pieces.faces.size(); ++f) {
       const Three face = pieces.faces[f];
       const auto plan = [&](std::size_t k) { return pieces.corners[face[k]].plan; };
-      const Eigen::Vector3d parts(cross(plan(1) - place, plan(2) - place),
-                                  cross(plan(2) - place, plan(0) - place),
-                                  cross(plan(0) - place, plan(1) - place));
+      const Eigen::Vector3d parts(plane_cross(plan(1) - place, plan(2) - place),
+                                  plane_cross(plan(2) - place, plan(0) - place),
+                                  plane_cross(plan(0) - place, plan(1) - place));
       if (!(parts.minCoeff() > 0) && !(parts.maxCoeff() < 0)) continue;
       const Eigen::Vector3d shares = parts / parts.sum();
       Corner corner{0, Eigen::Vector3d::Zero(), place, Eigen::Vector3d::Zero()};

@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "base/plane_cross.h"
+
 namespace axial::calibrate {
 namespace {
 
@@ -18,10 +20,6 @@ using Links = std::array<std::array<std::size_t, 2>, 2>;
 
 Eigen::Vector2d turned(const Eigen::Vector2d& direction) {
   return {-direction.y(), direction.x()};
-}
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
 }
 
 class Linker {
@@ -71,7 +69,8 @@ class Linker {
     if (std::min(contrast, other) < kLeastRatio * std::max(contrast, other)) return false;
     const Eigen::Vector2d way = saddles_[j].pixel - saddles_[i].pixel;
     const double ahead = way.dot(direction);
-    if (ahead < kSaddleRadius || std::abs(cross(way, direction)) > kAside * ahead) return false;
+    if (ahead < kSaddleRadius || std::abs(plane_cross(way, direction)) > kAside * ahead)
+      return false;
     const auto cosine = [&](std::size_t of_i) {
       return std::abs(saddles_[i].edges[of_i].dot(saddles_[j].edges[1 - of_i]));
     };
@@ -114,7 +113,7 @@ class Lattice {
           std::size_t first)
       : linker_(linker), saddles_(saddles), taken_(taken) {
     const Eigen::Vector2d x = saddles[first].edges[0], y = saddles[first].edges[1];
-    add({0, 0}, {first, 0, {x, cross(x, y) > 0 ? y : Eigen::Vector2d(-y)}});
+    add({0, 0}, {first, 0, {x, plane_cross(x, y) > 0 ? y : Eigen::Vector2d(-y)}});
     std::size_t done = 0;
     while (done < order_.size()) {  // grow() adds to the order
       const Cell cell = order_[done++];

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/parse_number.h"
+#include "base/srgb.h"
 
 namespace axial::color {
 
@@ -28,13 +29,13 @@ Transfer Transfer::parse(std::string_view text) {
 float Transfer::light(float value) const {
   const double v = std::clamp(value, 0.0f, 1.0f);
   if (gamma_ > 0) return static_cast<float>(std::pow(v, gamma_));
-  return static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+  return static_cast<float>(light_of_srgb(v));
 }
 
 float Transfer::value(float light) const {
   const double l = std::clamp(light, 0.0f, 1.0f);
   if (gamma_ > 0) return static_cast<float>(std::pow(l, 1 / gamma_));
-  return static_cast<float>(l <= 0.0031308 ? 12.92 * l : 1.055 * std::pow(l, 1 / 2.4) - 0.055);
+  return static_cast<float>(srgb_of_light(l));
 }
 
 float Transfer::slope(float value) const {

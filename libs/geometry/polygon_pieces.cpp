@@ -6,16 +6,13 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/plane_cross.h"
 #include "geometry/convex_part.h"
 
 namespace axial::geometry {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 struct Edge {
   Eigen::Vector2d from, to;  // from.x() <= to.x()
@@ -42,9 +39,9 @@ std::vector<Edge> edges_of(std::span<const Ring> rings) {
 // Where the interior of one edge crosses the other edge, or both lie on each other.
 std::optional<Eigen::Vector2d> crossing_of(const Edge& one, const Edge& two) {
   const Eigen::Vector2d a = one.to - one.from, b = two.to - two.from, between = two.from - one.from;
-  const double turn = cross(a, b);
+  const double turn = plane_cross(a, b);
   if (turn == 0) {
-    if (cross(a, between) != 0) return std::nullopt;
+    if (plane_cross(a, between) != 0) return std::nullopt;
     // On one line: the part that both have.
     const double length = a.squaredNorm();
     const double first = a.dot(between) / length, second = a.dot(two.to - one.from) / length;
@@ -53,7 +50,7 @@ std::optional<Eigen::Vector2d> crossing_of(const Edge& one, const Edge& two) {
     if (!(high > low)) return std::nullopt;
     return Eigen::Vector2d(one.from + (low + high) / 2 * a);
   }
-  const double on_one = cross(between, b) / turn, on_two = cross(between, a) / turn;
+  const double on_one = plane_cross(between, b) / turn, on_two = plane_cross(between, a) / turn;
   const auto is_inside = [](double share, const Eigen::Vector2d& edge) {
     return std::min(share, 1 - share) * edge.norm() > kTouch;
   };
@@ -73,7 +70,7 @@ void keep(Points& part, Points& spare, const Distance& distance) {
 double signed_area(const Ring& ring) {
   double twice = 0;  // relative to a corner, so that large coordinates cost no digits
   for (std::size_t i = 2; i < ring.size(); ++i)
-    twice += cross(ring[i - 1] - ring[0], ring[i] - ring[0]);
+    twice += plane_cross(ring[i - 1] - ring[0], ring[i] - ring[0]);
   return twice / 2;
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/order_statistics.h"
+#include "base/plane_cross.h"
 #include "map/geotiff.h"
 #include "scene/bilinear.h"
 
@@ -144,8 +145,8 @@ int samples_per_pixel(const MapContent& content) {
     const auto at = corners_of(content.mesh.mesh, f, content.frame, content.grid).at;
     const Eigen::Vector2d a = at.col(1) - at.col(0), b = at.col(2) - at.col(0);
     const Eigen::Vector2d s = (uv[1] - uv[0]).cast<double>(), t = (uv[2] - uv[0]).cast<double>();
-    const double pixels = std::abs(a.x() * b.y() - a.y() * b.x());
-    if (pixels > 0) widths.push_back(std::abs(s.x() * t.y() - s.y() * t.x()) / pixels);
+    const double pixels = std::abs(plane_cross(a, b));
+    if (pixels > 0) widths.push_back(std::abs(plane_cross(s, t)) / pixels);
   }
   if (widths.empty()) return 1;
   const double wanted = 1.5 * std::sqrt(upper_median(std::move(widths)));

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/plane_cross.h"
+
 namespace axial::map {
 namespace {
 
@@ -19,8 +21,7 @@ double side_of_edge(const FaceCorners& corners, int from, int to, const Eigen::V
   const bool swapped = key(from) > key(to);
   const Eigen::Vector2d a = corners.at.col(swapped ? to : from);
   const Eigen::Vector2d b = corners.at.col(swapped ? from : to);
-  const Eigen::Vector2d edge = b - a, way = place - a;
-  const double side = edge.x() * way.y() - edge.y() * way.x();
+  const double side = plane_cross(b - a, place - a);
   return swapped ? -side : side;
 }
 

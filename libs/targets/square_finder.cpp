@@ -8,6 +8,7 @@
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "base/plane_cross.h"
 #include "targets/agreement.h"
 #include "targets/corner_fit.h"
 #include "targets/dictionary.h"
@@ -74,8 +75,7 @@ Eigen::Matrix3d to_pattern_of(const Corners& corners, double half) {
 double area_of(const Corners& corners) {
   double twice = 0;
   for (std::size_t k = 0; k < 4; ++k) {
-    const Eigen::Vector2d &a = corners[k], &b = corners[(k + 1) % 4];
-    twice += a.x() * b.y() - a.y() * b.x();
+    twice += plane_cross(corners[k], corners[(k + 1) % 4]);
   }
   return std::abs(twice) / 2;
 }

@@ -4,12 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include "base/plane_cross.h"
+
 namespace axial::texture {
 namespace {
-
-float cross(const Eigen::Vector2f& a, const Eigen::Vector2f& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 cv::Vec3f as_pixel(const Eigen::Vector3f& v) {
   return {v[0], v[1], v[2]};
@@ -102,7 +100,7 @@ std::uint64_t bytes_of_field(std::uint64_t pixels) {
 
 void ChartField::add_triangle(const std::array<Eigen::Vector2f, 3>& corners,
                               const std::array<Eigen::Vector3f, 3>& values) {
-  const float area = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const float area = plane_cross(corners[1] - corners[0], corners[2] - corners[0]);
   if (area == 0) return;
   const Eigen::Vector2f low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
   const Eigen::Vector2f high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
@@ -114,8 +112,8 @@ void ChartField::add_triangle(const std::array<Eigen::Vector2f, 3>& corners,
     for (int x = x0; x <= x1; ++x) {
       if (covered_(y, x)) continue;
       const Eigen::Vector2f p(static_cast<float>(x), static_cast<float>(y));
-      const float s = cross(p - corners[0], corners[2] - corners[0]) / area;
-      const float t = cross(corners[1] - corners[0], p - corners[0]) / area;
+      const float s = plane_cross(p - corners[0], corners[2] - corners[0]) / area;
+      const float t = plane_cross(corners[1] - corners[0], p - corners[0]) / area;
       constexpr float kRounding = -1e-4f;
       if (s < kRounding || t < kRounding || 1 - s - t < kRounding) continue;
       covered_(y, x) = 1;

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/plane_cross.h"
 #include "geometry/posed_camera.h"
 #include "geometry/vertex_normals.h"
 #include "scene/bilinear.h"
@@ -56,14 +57,12 @@ class UnusablePixels {
 
  private:
   static bool near(const std::array<Eigen::Vector2f, 3>& corners, const Eigen::Vector2f& pixel) {
-    const auto cross = [](const Eigen::Vector2f& a, const Eigen::Vector2f& b) {
-      return a.x() * b.y() - a.y() * b.x();
-    };
-    const float turn = cross(corners[1] - corners[0], corners[2] - corners[0]) < 0 ? -1.0f : 1.0f;
+    const float turn =
+        plane_cross(corners[1] - corners[0], corners[2] - corners[0]) < 0 ? -1.0f : 1.0f;
     for (std::size_t k = 0; k < 3; ++k) {
       const Eigen::Vector2f edge = corners[(k + 1) % 3] - corners[k];
       constexpr float kReach = 1.42f;  // the diagonal of a pixel: all pixels of bilinear()
-      if (turn * cross(edge, pixel - corners[k]) < -kReach * edge.norm()) return false;
+      if (turn * plane_cross(edge, pixel - corners[k]) < -kReach * edge.norm()) return false;
     }
     return true;
   }

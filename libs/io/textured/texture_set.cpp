@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/srgb.h"
 #include "io/images/image.h"
 #include "private/images/image_codecs.h"
 #include "private/textured/textured_readers.h"
@@ -15,16 +16,11 @@ namespace {
 
 constexpr double kMostPixels = 1 << 26;  // of all textures with copies of their pictures
 
-// The transfer function of IEC 61966-2-1.
-double linear_of(int srgb) {
-  const double value = srgb / 255.0;
-  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-}
-
 cv::Mat3b multiplied(const cv::Mat3b& image, const Eigen::Vector3d& factor) {
   cv::Mat3b table(1, 256), result;
   for (int value = 0; value < 256; ++value)
-    for (int c = 0; c < 3; ++c) table(0, value)[c] = srgb_of(linear_of(value) * factor[2 - c]);
+    for (int c = 0; c < 3; ++c)
+      table(0, value)[c] = srgb_of(light_of_srgb(value / 255.0) * factor[2 - c]);
   cv::LUT(image, table, result);
   return result;
 }
@@ -61,9 +57,7 @@ double moved_into_texture(std::array<double*, 3> values, Wrap wrap, int pixels) 
 }  // namespace
 
 std::uint8_t srgb_of(double linear) {
-  const double value = std::clamp(linear, 0.0, 1.0);
-  const double srgb = value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(255 * srgb));
+  return static_cast<std::uint8_t>(std::lround(255 * srgb_of_light(std::clamp(linear, 0.0, 1.0))));
 }
 
 cv::Mat3b TextureSet::decoded(const TextureSource& source) {
