@@ -26,8 +26,9 @@
 #include "map/height_error.h"
 #include "map/local_coordinates.h"
 #include "map/pixel_width.h"
-#include "map/stated_kind.h"
+#include "map/profiles.h"
 #include "map/up_direction.h"
+#include "outputs.h"
 #include "scene/check_mesh.h"
 #include "scene/marked_faces.h"
 #include "settings.h"
@@ -39,34 +40,6 @@ namespace axial::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-map::MapFiles map_files(const Settings& settings) {
-  const auto named = [&](const char* end) { return fs::path(settings.output.string() + end); };
-  map::MapFiles files;
-  files.heights = named(".dem.tif");
-  files.colors = named(".ortho.tif");
-  files.counts = named(".views.tif");
-  if (settings.image_noise > 0) files.errors = named(".sigma.tif");
-  if (settings.hillshade) files.shades = named(".hillshade.tif");
-  if (settings.contours > 0) files.contours = named(".contours.geojson");
-  files.picture = named(".jpg");
-  return files;
-}
-
-// Removes maps of an earlier run that this run does not write: they belong to another map. A file
-// that does not state that it is such a map stays.
-void remove_stale_maps(const Settings& settings) {
-  const std::vector<fs::path> written = map_files(settings).all();
-  for (const auto& [end, kind] : {std::pair(".sigma.tif", map::kinds::kErrors),
-                                  std::pair(".hillshade.tif", map::kinds::kShades),
-                                  std::pair(".contours.geojson", map::kinds::kContours)}) {
-    const fs::path file = settings.output.string() + end;
-    if (std::ranges::find(written, file) != written.end() || map::stated_kind(file) != kind)
-      continue;
-    fs::remove(file);
-    log_info("removed {}, which belonged to an earlier map", file.string());
-  }
-}
 
 // The mesh, with its textures if it has some.
 TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame, const Context& context) {
@@ -301,13 +274,13 @@ void remove_outside(TexturedMesh& mesh, FaceFacts& facts) {
 }
 
 void write(const Settings& settings, const TexturedMesh& mesh, const FaceFacts& facts,
-           const PlacedMap& place, const std::string& crs, const Context& context) {
+           const PlacedMap& place, const map::MapFiles& files, const std::string& crs,
+           const Context& context) {
   map::WriteOptions options;
   options.crs = crs;
   options.is_georeferenced = place.is_georeferenced;
   options.mesh_frame = place.mesh_frame;
   options.contour_interval = settings.contours;
-  const map::MapFiles files = map_files(settings);
   const map::MapReport report = map::write_maps(
       files, {mesh, facts.views, facts.errors, place.frame, place.grid}, options, context);
   const auto share = [&](std::int64_t pixels) {
@@ -315,7 +288,7 @@ void write(const Settings& settings, const TexturedMesh& mesh, const FaceFacts& 
   };
   log_info("{:.1f} % of the map have a height, {:.1f} % have a colour", share(report.surface),
            share(report.colored));
-  remove_stale_maps(settings);
+  remove_stale_files(settings, files.all());
   for (const fs::path& file : files.all()) log_info("wrote {}", file.string());
 }
 
@@ -333,9 +306,10 @@ int run(int argc, char** argv) {
   const Context context = program_context(options.parsed);
   std::string crs = settings.epsg > 0 ? map::crs_of_epsg(settings.epsg) : "";
   boundary::take_map(settings.boundary, settings.up, crs);
-  const OutputLock lock = lock_output(map_files(settings).heights);
+  const OutputLock lock = lock_output(first_file(settings));
   survey::Survey survey = survey::open_scene(settings.survey, context);
   boundary::check_files(settings.boundary, settings.mesh, crs);
+  if (!settings.profiles.empty()) map::read_lines(settings.profiles, crs);
   TexturedMesh mesh = read_mesh(settings, survey.frame, context);
   if (survey.frame.is_world())
     map::warn_of_local_coordinates(settings.epsg, settings.survey.files.scene, context);
@@ -345,15 +319,17 @@ int run(int argc, char** argv) {
   survey::find_photographs(survey, context);
   survey.add_inputs(io::files_of_mesh(settings.mesh));
   survey.add_inputs(settings.boundary.inputs());
+  survey.add_inputs(std::vector<fs::path>{settings.profiles});
   survey.scene = {};
   return_freed_memory();
   const survey::Photographs photographs(survey);
   naming(settings.mesh, [&] {
     const Eigen::Vector3d facing = keep_seen_part(settings, survey, mesh, context);
     PlacedMap place = place_map(settings, mesh.mesh, survey, crs, facing, context);
-    survey.keep_inputs(map_files(settings).all(), setting("output_file"));
     if (place.boundary) mark_outside(place, mesh, context);
     place_pixels(mesh.mesh, survey, place);
+    const map::MapFiles files = map_files(settings, survey, place.grid, crs);
+    survey.keep_inputs(files.all(), setting("output_file"));
     std::optional<map::HeightErrors> errors;
     if (settings.image_noise > 0)
       errors.emplace(survey::posed_cameras(survey), place.frame.axes.row(2).transpose(),
@@ -366,7 +342,7 @@ int run(int argc, char** argv) {
     if (place.boundary) remove_outside(mesh, facts);
     return_freed_memory();
     photographs.report(context);
-    write(settings, mesh, facts, place, crs, context);
+    write(settings, mesh, facts, place, files, crs, context);
   });
   return 0;
 }

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "base/option_values.h"
 #include "base/output_name.h"
+#include "base/parse_number.h"
+#include "base/split.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"
 #include "io/openmvs/scene_files.h"
@@ -31,6 +35,39 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
       .add("output-file,o", &settings.output, "begin of the names of the maps (<input>_map)")
       .output_file()
       .add_max_memory();
+}
+
+std::vector<int> widths_of(const std::string& text) {
+  std::vector<int> widths;
+  for (const std::string_view word : split(text, ',')) {
+    const std::optional<int> width = parse_number<int>(trimmed(word));
+    if (!width || *width < 1 || *width > map::kMostPixels)
+      fail("--widths {}: must be numbers of pixels from 1 to 1000000, separated by commas", text);
+    if (std::ranges::find(widths, *width) != widths.end())
+      fail("--widths {}: has {} twice", text, *width);
+    widths.push_back(*width);
+  }
+  if (widths.empty()) fail("--widths: must be numbers of pixels, separated by commas");
+  return widths;
+}
+
+void declare_copies(OptionList& list, Settings& settings) {
+  list.add_choice(
+          "preset", &settings.copies.preset,
+          {{"gis", map::Preset::gis},
+           {"taglab", map::Preset::taglab},
+           {"archive", map::Preset::archive}},
+          "copies for other programs beside the maps: gis: none, taglab: orthomosaic and "
+          "heights for TagLab, in blocks of at most 32767 px, archive: all maps as lossless "
+          "GeoTIFF with world files and a description in XML")
+      .add_text(
+          "widths",
+          [&settings](const std::string& text) { settings.copies.widths = widths_of(text); },
+          "write further copies of orthomosaic and heights with these widths [px], separated by "
+          "commas, at most that of the map")
+      .add("profiles", &settings.profiles,
+           "lines (GeoJSON, GeoPackage or shape file) in the coordinates of the map, along which "
+           "the heights are written as CSV, GeoPackage and DXF");
 }
 
 void declare_map(OptionList& list, Raw& raw, Settings& settings) {
@@ -93,6 +130,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   declare_io(program.visible, raw, options.settings);
   io::declare_scene_options(program.visible, raw.scene);
   declare_map(program.visible, raw, options.settings);
+  declare_copies(program.visible, options.settings);
   declare_photographs(program.visible, options.settings);
   program.hidden.add("views-file", &options.settings.survey.views_file,
                      "text file with the IDs or names of the images to use, one per line");

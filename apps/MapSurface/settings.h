@@ -11,6 +11,7 @@
 #include "base/program.h"
 #include "boundary/options.h"
 #include "map/height_error.h"
+#include "map/map_copies.h"
 
 namespace axial::apps {
 
@@ -24,8 +25,10 @@ struct Settings {
   int epsg = 0;      // 0: no coordinate reference system
   bool hillshade = false;
   double image_noise =
-      map::kDefaultNoise;  // for the expected errors of heights [px]; 0: no map of them
-  double contours = 0;     // height between contour lines [m]; 0: none
+      map::kDefaultNoise;          // for the expected errors of heights [px]; 0: no map of them
+  double contours = 0;             // height between contour lines [m]; 0: none
+  std::filesystem::path profiles;  // lines; empty: none
+  map::CopyOptions copies;
 };
 
 struct Options {

@@ -9,6 +9,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "private/csv.h"
 #include "private/vector_output.h"
 
 namespace axial::map {
@@ -57,14 +58,6 @@ std::vector<Cell> cells_of(const AreaMeasures& found, double length_sigma) {
                        std::abs(value) * column.power * length_sigma, column.digits + 1});
   }
   return cells;
-}
-
-// RFC 4180: quotes around a text with a comma, a quote or a line break.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + '"';
 }
 
 Geometry geometry_of(const Area& area) {

@@ -12,30 +12,59 @@
 #include "private/vector_output.h"
 
 namespace axial::map {
+namespace {
 
-void write_contours(const std::filesystem::path& heights, double interval,
-                    const std::filesystem::path& path) {
+namespace fs = std::filesystem;
+
+// Makes the layer of the lines in `file`, and the lines.
+bool make_lines(GDALDatasetH map, double interval, GDALDatasetH file, OGRwkbGeometryType type,
+                const GdalOptions& layer_options) {
+  const OGRLayerH layer =
+      GDALDatasetCreateLayer(file, "contours", GDALGetSpatialRef(map), type, layer_options.list());
+  if (layer == nullptr) return false;
+  if (!add_field(layer, "ID", OFTInteger) || !add_field(layer, "height", OFTReal)) return false;
+  const int first = OGR_FD_GetFieldIndex(OGR_L_GetLayerDefn(layer), "ID");
+  const GdalOptions options{{"LEVEL_INTERVAL", fmt::format("{}", interval)},
+                            {"ID_FIELD", std::to_string(first)},
+                            {"ELEV_FIELD", std::to_string(first + 1)},
+                            {"NODATA", fmt::format("{}", kNoHeight)}};
+  return GDALContourGenerateEx(GDALGetRasterBand(map, 1), layer, options.list(), nullptr,
+                               nullptr) == CE_None;
+}
+
+std::string description() {
+  return fmt::format("{} {}", kKindItem, kinds::kContours);
+}
+
+void write_geojson(GDALDatasetH map, double interval, const fs::path& path,
+                   const GdalErrors& errors) {
+  DatasetPtr file = make_vector_file("GeoJSON", path, errors);
+  const bool works = make_lines(
+      map, interval, file.get(), wkbLineString,
+      {{"COORDINATE_PRECISION", "4"}, {"WRITE_NAME", "NO"}, {"DESCRIPTION", description()}});
+  file.reset();
+  errors.require_written(works, path);
+  require_complete_geojson(path);
+}
+
+void write_package(GDALDatasetH map, double interval, const fs::path& path,
+                   const GdalErrors& errors) {
+  const FixedDate date;
+  DatasetPtr file = make_vector_file("GPKG", path, errors);
+  const bool works =
+      make_lines(map, interval, file.get(), wkbLineString25D, {{"DESCRIPTION", description()}});
+  file.reset();
+  errors.require_written(works, path);
+}
+
+}  // namespace
+
+void write_contours(const fs::path& heights, double interval, const ContourFiles& files) {
   const GdalErrors errors;
   const DatasetPtr map = open_map(heights, errors);
-  DatasetPtr file = make_vector_file("GeoJSON", path, errors);
-  const GdalOptions layer_options{
-      {"COORDINATE_PRECISION", "4"},
-      {"WRITE_NAME", "NO"},
-      {"DESCRIPTION", fmt::format("{} {}", kKindItem, kinds::kContours)}};
-  const OGRLayerH layer = GDALDatasetCreateLayer(
-      file.get(), "contours", GDALGetSpatialRef(map.get()), wkbLineString, layer_options.list());
-  errors.require_written(layer != nullptr, path);
-  errors.require_written(add_field(layer, "ID", OFTInteger) && add_field(layer, "height", OFTReal),
-                         path);
-  const GdalOptions options{{"LEVEL_INTERVAL", fmt::format("{}", interval)},
-                            {"ID_FIELD", "0"},
-                            {"ELEV_FIELD", "1"},
-                            {"NODATA", fmt::format("{}", kNoHeight)}};
-  const CPLErr done = GDALContourGenerateEx(GDALGetRasterBand(map.get(), 1), layer, options.list(),
-                                            nullptr, nullptr);
-  file.reset();
-  errors.require_written(done == CE_None, path);
-  require_complete_geojson(path);
+  if (!files.geojson.empty()) write_geojson(map.get(), interval, files.geojson, errors);
+  if (!files.package.empty()) write_package(map.get(), interval, files.package, errors);
+  if (!files.drawing.empty()) write_drawing(files.package, "contours", files.drawing);
 }
 
 }  // namespace axial::map

@@ -80,6 +80,7 @@ void start_gdal() {
     RegisterOGRGeoJSON();
     RegisterOGRGeoPackage();
     RegisterOGRShape();
+    RegisterOGRDXF();
     GDALSetCacheMax64(static_cast<GIntBig>(kCacheBytes));
   });
 }

@@ -164,14 +164,18 @@ cv::Size reduced_size(const MapGrid& grid, int longest_side) {
   return grid.columns > grid.rows ? cv::Size(many, few) : cv::Size(few, many);
 }
 
+MapGrid grid_of(GDALDatasetH file) {
+  std::array<double, 6> transform{};
+  GDALGetGeoTransform(file, transform.data());
+  return {transform[0], transform[3], transform[1], GDALGetRasterXSize(file),
+          GDALGetRasterYSize(file)};
+}
+
 StoredMap read_map(const fs::path& path, int longest_side) {
   const GdalErrors errors;
   const DatasetPtr file = open_map(path, errors);
   StoredMap map;
-  std::array<double, 6> transform{};
-  GDALGetGeoTransform(file.get(), transform.data());
-  map.grid = {transform[0], transform[3], transform[1], GDALGetRasterXSize(file.get()),
-              GDALGetRasterYSize(file.get())};
+  map.grid = grid_of(file.get());
   map.crs = GDALGetProjectionRef(file.get());
   const int bands = GDALGetRasterCount(file.get());
   const GDALRasterBandH first = GDALGetRasterBand(file.get(), 1);

@@ -24,6 +24,10 @@ bool is_point(OGRwkbGeometryType type) {
   return type == wkbPoint || type == wkbMultiPoint;
 }
 
+bool is_line(OGRwkbGeometryType type) {
+  return type == wkbLineString || type == wkbMultiLineString;
+}
+
 // What the shapes are called in messages.
 struct Words {
   const char *several, *none;
@@ -31,10 +35,12 @@ struct Words {
 
 Words words_of(Shapes shapes) {
   if (shapes == Shapes::polygons) return {"polygons", "no polygon"};
+  if (shapes == Shapes::lines) return {"lines", "no line"};
   return {"polygons or points", "neither polygon nor point"};
 }
 
 bool is_one_of(OGRwkbGeometryType type, Shapes shapes) {
+  if (shapes == Shapes::lines) return is_line(type);
   return is_polygon(type) || (shapes == Shapes::polygons_and_points && is_point(type));
 }
 
@@ -43,7 +49,7 @@ bool may_have(OGRLayerH layer, Shapes shapes) {
   return type == wkbUnknown || is_one_of(type, shapes);
 }
 
-// The layers that may have such shapes. Of polygons alone, which are measured, only one.
+// The layers that may have such shapes. Of shapes that are measured, only one.
 std::vector<OGRLayerH> layers_of(GDALDatasetH data, Shapes shapes, const fs::path& file) {
   std::vector<OGRLayerH> found;
   std::string names;
@@ -55,7 +61,7 @@ std::vector<OGRLayerH> layers_of(GDALDatasetH data, Shapes shapes, const fs::pat
   }
   const char* const several = words_of(shapes).several;
   if (found.empty()) fail_in(file, "has no layer with {}", several);
-  if (found.size() > 1 && shapes == Shapes::polygons)
+  if (found.size() > 1 && shapes != Shapes::polygons_and_points)
     fail_in(file, "has several layers with {} ({}): write one of them to a file of its own",
             several, names);
   return found;
@@ -151,7 +157,10 @@ Geometry shape_of(OGRFeatureH feature, const std::string& name, Shapes shapes,
             "{} '{}' cannot be converted to the coordinates of the map: are its coordinates "
             "in another system than the file states? A GeoJSON file without \"crs\" has degrees of "
             "WGS 84",
-            is_point(type) ? "point" : "polygon", name);
+            is_point(type)  ? "point"
+            : is_line(type) ? "line"
+                            : "polygon",
+            name);
   return shape;
 }
 

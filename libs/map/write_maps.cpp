@@ -26,8 +26,9 @@ constexpr int kJpegQuality = 92;
 
 // In the order of MapFiles::all().
 constexpr fs::path MapFiles::*kMembers[] = {
-    &MapFiles::heights, &MapFiles::colors,   &MapFiles::counts, &MapFiles::errors,
-    &MapFiles::shades,  &MapFiles::contours, &MapFiles::picture};
+    &MapFiles::heights, &MapFiles::colors,          &MapFiles::counts,
+    &MapFiles::errors,  &MapFiles::shades,          &MapFiles::contours,
+    &MapFiles::picture, &MapFiles::contour_package, &MapFiles::contour_drawing};
 
 // The open maps. Blocks are written by one thread at a time.
 class OpenMaps {
@@ -106,6 +107,15 @@ void write_picture(const fs::path& path, const fs::path& colors, const WriteOpti
                  kJpegQuality);
 }
 
+void write_further(const MapFiles& files, const Context& context) {
+  if (files.further.empty()) return;
+  ProgressCounter counter(context.stage("Further files"), files.further.size());
+  for (const FurtherFiles& one : files.further) {
+    one.write(files, one.paths);
+    counter.add();
+  }
+}
+
 MapReport make_maps(const MapFiles& files, const MapContent& content, const WriteOptions& options,
                     const Context& context) {
   if (options.samples == 0)
@@ -123,8 +133,10 @@ MapReport make_maps(const MapFiles& files, const MapContent& content, const Writ
   }
   const MapReport report = maps.finish(context.stage("Files"));
   if (!files.contours.empty())
-    write_contours(files.heights, options.contour_interval, files.contours);
+    write_contours(files.heights, options.contour_interval,
+                   {files.contours, files.contour_package, files.contour_drawing});
   if (!files.picture.empty()) write_picture(files.picture, files.colors, options);
+  write_further(files, context);
   return report;
 }
 
@@ -150,6 +162,8 @@ std::vector<fs::path> MapFiles::all() const {
   std::vector<fs::path> paths;
   for (const auto member : kMembers)
     if (!(this->*member).empty()) paths.push_back(this->*member);
+  for (const FurtherFiles& one : further)
+    paths.insert(paths.end(), one.paths.begin(), one.paths.end());
   return paths;
 }
 
@@ -172,6 +186,8 @@ MapReport write_maps(const MapFiles& files, const MapContent& content, const Wri
     auto next = temporaries.begin();
     for (const auto member : kMembers)
       if (!(renamed.*member).empty()) renamed.*member = *next++;
+    for (FurtherFiles& one : renamed.further)
+      for (fs::path& path : one.paths) path = *next++;
     report = make_maps(renamed, content, options, context);
     if (report.surface == 0)
       fail("the map shows no surface: the mesh is upright, or smaller than a pixel");

@@ -349,7 +349,7 @@ class MapsOfTheSamePrefix(Wall):
         other = {name: changes["reef.change.sigma.tif"] for name in ("reef.sigma.tif", "reef.hillshade.tif")}
         self.succeeds(*map_it, "--image-noise", "0")
         self.assertEqual(set(contents(self.work)) & set(maps), set(maps) - {
-            "reef.sigma.tif", "reef.hillshade.tif", "reef.contours.geojson"})
+            "reef.sigma.tif", "reef.hillshade.tif", "reef.contours.geojson", "reef.contours.gpkg", "reef.contours.dxf"})
         notes = {**other, "reef.contours.geojson": b'{"type": "FeatureCollection", "features": []}'}
         for name, data in notes.items():
             write(self.path("work", name), data)

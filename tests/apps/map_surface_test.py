@@ -4,9 +4,10 @@ input."""
 
 import os
 import re
+from xml.etree import ElementTree
 
 from geotiff import read_geotiff
-from programs import files_below, main, read, write
+from programs import contents, files_below, main, read, write
 from tiny_scene import DISTANCE, texture
 from worlds import Wall, geo_offset, turned, wall
 
@@ -33,7 +34,8 @@ class Files(MapTest):
     def test_names(self):
         self.assertEqual(self.makes(*self.map())[0], MAPS)
         self.succeeds(*self.map("-o", "new/a.v2", "--hillshade", "--contours", "0.1"))
-        ends = ("dem.tif", "ortho.tif", "views.tif", "sigma.tif", "hillshade.tif", "contours.geojson", "jpg")
+        ends = ("dem.tif", "ortho.tif", "views.tif", "sigma.tif", "hillshade.tif", "contours.geojson", "contours.gpkg",
+                "contours.dxf", "jpg")
         self.assertLess({"new/a.v2." + end for end in ends}, files_below(self.work))
 
     def test_without_image_noise_there_are_no_expected_errors(self):
@@ -60,6 +62,74 @@ class Files(MapTest):
         self.assertEqual({color[1:] for color in shown}, {(0, 0)})
         self.succeeds(*self.command("TextureMesh", "-o", "textured"))
         self.assertIn(told, self.succeeds(*self.map("-m", "textured.ply", "--colors", "none")).stdout)
+
+
+class Copies(MapTest):
+    """Copies of the wall's map, which has 55 columns of 0.011 m, and profiles."""
+    LINE = ('{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"name": "a"}, "geometry": '
+            '{"type": "LineString", "coordinates": [[-0.2, 0], [0.2, 0.1]]}}]}')
+
+    def copies(self, *arguments):
+        """The files of a run besides those of a run without options."""
+        self.succeeds(*self.map(*arguments))
+        return {name.removeprefix("scene_map.") for name in set(contents(self.work)) - self.before - MAPS}
+
+    def setUp(self):
+        super().setUp()
+        self.before = set(contents(self.work))
+
+    def test_copies_of_an_earlier_run_are_removed_and_no_other_file(self):
+        self.assertEqual(self.copies("--preset", "taglab", "--widths", "40,20"),
+                         {f"taglab.{name}{width}.tif" for name in ("dem", "ortho") for width in ("", "_40", "_20")})
+        copy = self.at("scene_map.taglab.dem.tif")
+        archive = {f"archive.{name}.{end}" for name in ("dem", "ortho", "views", "sigma") for end in ("tif", "tfw")}
+        self.assertEqual(self.copies("--preset", "archive"), archive | {"archive.xml"})
+        self.assertEqual(self.copies("--widths", "40"), {"dem_40.tif", "ortho_40.tif"})
+        # A copy of another map, and a map of another program.
+        write(self.path("work", "other.taglab.dem.tif"), copy)
+        write(self.path("work", "scene_map.taglab.old.tif"), self.at("scene_map.dem.tif"))
+        self.assertEqual(self.copies(), {"other.taglab.dem.tif", "taglab.old.tif"})
+
+    def test_other_widths(self):
+        self.succeeds(*self.map("--widths", "11"))
+        whole, copy = self.read_map("dem"), self.read_map("dem_11")
+        self.assertEqual(len(copy.rows[0]), 11)
+        self.assertAlmostEqual(copy.pixel * 11, whole.pixel * len(whole.rows[0]))
+        self.assertAlmostEqual(copy.rows[5][5], -DISTANCE, 6)
+
+    def test_the_description_of_an_archive(self):
+        self.succeeds(*self.map("--preset", "archive"))
+        root = ElementTree.fromstring(self.at("scene_map.archive.xml"))
+        self.assertEqual(root.findtext("title"), "scene")
+        self.assertEqual(root.findtext("spatialResolution"), "0.011")
+        self.assertEqual([one.text for one in root.iter("source")], ["scene.mvs", "scene.ply"])
+        self.assertLess(0, float(root.findtext("expectedHeightError/rms")))
+        for name in root.iter("file"):
+            self.at(name.text)
+
+    def test_profiles(self):
+        write(self.path("work", "lines.geojson"), self.LINE)
+        self.assertEqual(self.copies("--profiles", self.path("work", "lines.geojson")),
+                         {"lines.geojson", "profiles.csv", "profiles.gpkg", "profiles.dxf"})
+        head, *rows = self.at("scene_map.profiles.csv").decode().splitlines()
+        self.assertEqual(head, "profile,distance_m,x,y,height_m")
+        self.assertEqual(len(rows), 39)  # 0.4123 m / 0.011 m, and both ends
+        self.assertEqual(rows[-1], f"a,0.4123,0.2000,0.1000,{-DISTANCE:.4f}")
+        self.assertEqual(self.copies(), {"lines.geojson"})
+
+    def test_profiles_and_widths_that_do_not_fit(self):
+        lines = self.path("work", "lines.geojson")
+        write(lines, self.LINE.replace("0.2, 0.1", "20, 0.1"))
+        write(self.path("work", "text.geojson"), "no lines")
+        self.refuses_each(
+                self.map(),
+                ("lines.geojson: line 'a' is not on the map at (20.000, 0.100)", "--profiles", lines),
+                ("text.geojson: cannot be read", "--profiles", self.path("work", "text.geojson")),
+                ("none.geojson: cannot be read: it does not exist", "--profiles", "none.geojson"),
+                ("--widths 5600: the map has ", "--widths", "40,5600"),
+                ("--widths 40,x: must be numbers of pixels", "--widths", "40,x"),
+                ("--widths 40,40: has 40 twice", "--widths", "40,40"),
+                ("--preset geo: must be one of gis, taglab, archive", "--preset", "geo"))
 
 
 class Pixels(MapTest):

@@ -9,7 +9,9 @@ TEXTURED = (".glb", ".ply", ".obj", ".mtl", ".gltf", ".bin", "[0-9].png", "[0-9]
             "_material_[0-9][0-9][0-9]_map_Kd.png", "_gltf[0-9].png", "_gltf[0-9][0-9].png",
             "_gltf[0-9][0-9][0-9].png")
 TILE = ".tile[0-9]*-[0-9]*"
-MAPS = ("dem.tif", "ortho.tif", "views.tif", "sigma.tif", "hillshade.tif", "contours.geojson", "jpg")
+MAPS = ("dem.tif", "ortho.tif", "views.tif", "sigma.tif", "hillshade.tif", "contours.geojson", "contours.gpkg",
+        "contours.dxf", "jpg", "dem_[0-9]*.tif", "ortho_[0-9]*.tif", "taglab.dem*.tif", "taglab.ortho*.tif",
+        "archive.*.tif", "archive.*.tfw", "archive.xml", "profiles.csv", "profiles.gpkg", "profiles.dxf")
 CHANGES = ("difference.tif", "sigma.tif", "significant.tif", "json", "jpg")
 
 

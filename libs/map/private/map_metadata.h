@@ -19,4 +19,7 @@ void state_axes(GDALDatasetH file, const WorldAxes& axes);
 // item if an item does not have its numbers, or if the axes are no rotation.
 std::optional<WorldAxes> axes_in(GDALDatasetH file, const std::filesystem::path& path);
 
+// The grid of a map that GeoTiff wrote.
+MapGrid grid_of(GDALDatasetH file);
+
 }  // namespace axial::map

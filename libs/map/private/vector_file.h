@@ -12,7 +12,7 @@
 
 namespace axial::map {
 
-enum class Shapes { polygons, polygons_and_points };
+enum class Shapes { polygons, lines, polygons_and_points };
 
 // A feature of a file. `shape` has the coordinates of the map, and no curves.
 struct FoundFeature {
@@ -24,8 +24,8 @@ struct FoundFeature {
 // Calls use(found) for each feature of a GeoJSON, GeoPackage or shape file, layer by layer in their
 // order. Layers of other shapes are left out. Coordinates are converted as by read_areas(). Error
 // that names the file, and the feature: the file cannot be read; it has no layer with such shapes,
-// or several layers for Shapes::polygons; these layers have no feature; a feature has another
-// shape, or coordinates that cannot be converted.
+// or several layers unless for Shapes::polygons_and_points; these layers have no feature; a feature
+// has another shape, or coordinates that cannot be converted.
 void for_each_feature(const std::filesystem::path& file, const std::string& crs, Shapes shapes,
                       const std::function<void(const FoundFeature& found)>& use);
 

@@ -37,6 +37,11 @@ class FixedDate : public GdalSetting {
 DatasetPtr make_vector_file(const char* driver, const std::filesystem::path& file,
                             const GdalErrors& errors);
 
+// Writes the lines of the only layer of the GeoPackage `package` as DXF, all on the layer `layer`
+// of the drawing. Error that names the file that cannot be read or written.
+void write_drawing(const std::filesystem::path& package, const char* layer,
+                   const std::filesystem::path& file);
+
 // Error that names `file` if a GeoJSON is cut off: GDAL does not notice a failed write, for example
 // on a full disk.
 void require_complete_geojson(const std::filesystem::path& file);

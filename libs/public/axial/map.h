@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -94,6 +95,16 @@ struct MapContent {
   MapGrid grid;
 };
 
+struct MapFiles;
+
+// Files that are made from finished maps, such as copies in another format. `write` gets the maps
+// and the files `paths` under the names under which they lie at this moment, and writes `paths` in
+// place.
+struct FurtherFiles {
+  std::vector<std::filesystem::path> paths;
+  std::function<void(const MapFiles& maps, std::span<const std::filesystem::path> paths)> write;
+};
+
 // The files to write. An empty path: the file is not written.
 struct MapFiles {
   std::filesystem::path heights;   // GeoTIFF (MapKind::heights)
@@ -103,8 +114,11 @@ struct MapFiles {
   std::filesystem::path shades;    // GeoTIFF (MapKind::shades)
   std::filesystem::path contours;  // GeoJSON of write_contours(); needs `heights`
   std::filesystem::path picture;   // JPEG of draw_overview(); needs `colors`
+  // GeoPackage and DXF of write_contour_copies(); need `contours`.
+  std::filesystem::path contour_package = {}, contour_drawing = {};
+  std::vector<FurtherFiles> further = {};
 
-  // The files with a path, in the order of the members.
+  // All files with a path, in the order of the members.
   std::vector<std::filesystem::path> all() const;
 };
 
@@ -126,7 +140,8 @@ struct MapReport {
 // Makes the maps of `content` block by block, several at the same time, and writes them. All files
 // are written under temporary names and then renamed one after the other. If anything fails before
 // that, existing files keep their content. The result has the same bytes for any number of threads,
-// any size of blocks and any memory. The stages "Maps" and "Files" count blocks and files.
+// any size of blocks and any memory. The stages "Maps", "Files" and "Further files" count blocks,
+// maps and members of MapFiles::further, whose errors are passed on.
 //
 // Errors of check_content() are passed on. Error that names the file if it cannot be written, and
 // if the memory does not suffice for samples_per_pixel(), and for the lists of faces and one block.
