@@ -81,6 +81,7 @@ class Reconstruct(unittest.TestCase):
         self.assertLess(report["rms_after_px"], 1)
         self.assertEqual(len(report["images"]), 6)
         self.assertIn("mean distance to the truth", (out / "report.md").read_text())
+        self.assertIn(f"<td>{report['rms_after_px']:.3f}</td>", (out / "report.html").read_text())
         evaluation = read_json(out, "evaluation.json")
         self.assertGreater(evaluation["accuracy"]["count"], 50000)
         self.assertLess(evaluation["accuracy"]["median"], 0.002)

@@ -19,9 +19,9 @@ steps after the poses run for each date.
 import fcntl
 import pathlib
 
-from . import cluster, control, dates, files, ownership, poses, still_features, video
+from . import cluster, control, dates, files, ownership, poses, still_features, survey_report, video
 from .failure import Failure, run_main
-from .reconstruct_options import check_options, check_photographs, options, wanted_steps
+from .reconstruct_options import check_options, check_photographs, options, skipped, wanted_steps
 from .reconstruct_steps import RESTORED, best_mesh, final_cloud, las_of, steps
 from .step_kinds import ORDER
 from .steps import run_all
@@ -134,7 +134,8 @@ def results_of(given, out):
         found.append(("Changes", out / "scene.change.*"))
     if "page" in wanted:
         found.append(("Page", out / "page" / "index.html"))
-    return "   ".join(f"{name}: {path}" for name, path in [*found, ("Report", out / "report.md")])
+    found.append(("Report", out / ("report.md" if survey_report.NAME in skipped(given) else survey_report.PAGE)))
+    return "   ".join(f"{name}: {path}" for name, path in found)
 
 
 def make_frames(given, out):
@@ -157,10 +158,15 @@ def run_dates(given, out):
     return dates.lines_of(found, out)
 
 
+def names_of(given, todo):
+    """The names of the steps `todo`, and of the report unless it is left out."""
+    return [*(step.name for step in todo), *({survey_report.NAME} - {*skipped(given)})]
+
+
 def run_steps(given, out):
-    """Runs the steps of one folder, and writes its report."""
+    """Runs the steps of one folder, and writes its reports."""
     todo = list(steps(given, out))
-    ownership.check(out, [step.name for step in todo], bool(given.cluster))
+    ownership.check(out, names_of(given, todo), bool(given.cluster))
     out.mkdir(parents=True, exist_ok=True)
     with only_run_in(out) as lock:
         seconds = (cluster.run_all(todo, given, out, lock) if given.cluster
@@ -169,7 +175,9 @@ def run_steps(given, out):
         if given.dates and not given.date:
             text += "\n".join(run_dates(given, out)) + "\n"
         files.write(out / "report.md", text)
-    left_over = ownership.left_over(out, [step.name for step in todo])
+        if survey_report.NAME in names_of(given, todo):
+            survey_report.write(given, out, todo, [*(given.lines if not given.date else ()), *poses.lines_about(out)])
+    left_over = ownership.left_over(out, names_of(given, todo))
     if left_over:
         print(f"Of an earlier run, not of this one: {files.few(left_over, ownership.MOST_NAMED)}")
 
@@ -192,7 +200,7 @@ def reconstruct(given):
     if given.dates:
         dates.claim(out)
     if given.check:
-        ownership.check(out, [step.name for step in steps(given, out)], bool(given.cluster))
+        ownership.check(out, names_of(given, steps(given, out)), bool(given.cluster))
         say_found(found)
         return
     run_steps(given, out)

@@ -33,14 +33,18 @@ def entry_of(step, todo, out):
             "version": Records(out).read(step).get("version"), "warnings": warnings_of(logs)}
 
 
+def command_of(given):
+    """The words of a command that has the options `given`."""
+    found = {**vars(given), "lens": vars(given).get("lenses"), "video": vars(given).get("videos")}
+    found["images"] = "" if found["video"] else vars(given).get("images")  # the first checks set it for videos
+    return ["reconstruct", *(f"--{name.replace('_', '-')}={one}" for name, value in found.items()
+                             if value and name not in FOUND for one in (value if isinstance(value, list) else [value]))]
+
+
 def write_run(path, given, todo, out):
     """Writes the file `path` about the steps `todo`, which are done, of a run in the folder `out`.
     `given`: the options of `reconstruct`."""
-    found = {**vars(given), "lens": vars(given).get("lenses"), "video": vars(given).get("videos")}
-    found["images"] = "" if found["video"] else vars(given).get("images")  # the first checks set it for videos
-    options = [f"--{name.replace('_', '-')}={one}" for name, value in found.items()
-               if value and name not in FOUND for one in (value if isinstance(value, list) else [value])]
-    run = {"command": ["reconstruct", *options], "steps": [entry_of(step, todo, out) for step in todo]}
+    run = {"command": command_of(given), "steps": [entry_of(step, todo, out) for step in todo]}
     refined = files.read_object(out / "refined" / "report.json").get("control")
     if refined:
         run["control"] = control.rows_of(refined)

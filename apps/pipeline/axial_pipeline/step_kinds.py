@@ -71,8 +71,11 @@ KINDS = {
     "page": Kind(["page", "run.json", "run.json.tmp"], (8000, 1, 30, 0.05), "ViewScene", result="page",
                  can_be_left_out=True),
     "evaluate": Kind(["evaluation.json"], (8000, 0, 60, 0)),
-    # The last step, so that a run that is done makes nothing again if --las is added.
-    "las": Kind(["scene_dense.las", "scene_restored.las"], (500, 0, 30, 0.02), result="cloud")}
+    # The last step with a command, so that a run that is done makes nothing again if --las is added.
+    "las": Kind(["scene_dense.las", "scene_restored.las"], (500, 0, 30, 0.02), result="cloud"),
+    # After all commands, as report.md (survey_report.py).
+    "report": Kind(["report.html", "report.html.tmp", "report.pdf", "report.pdf.tmp"], (500, 0, 30, 0),
+                   can_be_left_out=True)}
 ORDER = list(KINDS)
 NEEDS_OF_PLAN = (2000, 2, 30, 0.02)  # as needs, of the job "plan"
 # Steps of --restore-colors, and those of them that only --match-restored has.
