@@ -49,7 +49,9 @@ case "$name $*" in
 esac
 """
 # A stand-in for the browser that prints report.html: Chromium takes seconds to start.
-BROWSER = """for word; do case $word in --print-to-pdf=*) printf '%%PDF-1.4\\n%%%%EOF\\n' > "${word#*=}" ;; esac; done"""
+BROWSER = """for word; do
+  case $word in --print-to-pdf=*) printf '%%PDF-1.4\\n%%%%EOF\\n' > "${word#*=}" ;; esac
+done"""
 
 
 class StandIns(InFolder):

@@ -212,6 +212,7 @@ class ViewPage(ViewCase):
         self.assertIn("3 points", page.value("document.getElementById('paths').innerText"))
         self.check_mesh(page)
         self.check_volume(page)
+        self.check_long_values(page)
         self.assertEqual(page.errors, [])
 
     def check_csv(self, page, places):
@@ -272,6 +273,40 @@ class ViewPage(ViewCase):
         self.assertAlmostEqual(volumes["surface"], 0.24 * 0.24 / 2, delta=1e-6)
         self.assertAlmostEqual(volumes["rugosity"], 1, delta=1e-5)
         self.assertIn("0.00288", page.value("axial.paths.csv()"))
+
+    def check_long_values(self, page):
+        """No value is cut off at the right edge of the panel, which has a fixed width at 1280 px."""
+        page.value("axial.paths.all[0].volumes = {above: 123456.789012, below: 123456.789012, surface: 123456.7, "
+                   "covered: 0.5, rugosity: 12.345}; axial.paths.show()")
+        self.assertIn("of the covered part", page.value("document.getElementById('paths').innerText"))
+        self.assertEqual(page.value("document.getElementById('measure').scrollWidth"),
+                         page.value("document.getElementById('measure').clientWidth"))
+
+    def test_links_lead_to_a_view(self):
+        page = self.opened()
+        page.click_on("#canvas")
+        page.press("ArrowLeft", 37)
+        page.click_on("#show-cameras")
+        page.click_on("[data-tab=measure]")
+        eye = page.value("axial.view.camera.position.toArray()")
+        page.click_on("#link")
+        link = page.value("location.hash")
+        page.value("axial.ready = false; location.reload()")
+        page.wait_for("globalThis.axial && axial.ready")
+        self.near(page.value("axial.view.camera.position.toArray()"), eye, 1e-6)
+        self.assertFalse(page.value("axial.view.cameras.group.visible"))
+        self.assertEqual(page.value("axial.state.tab"), "measure")
+        message = "document.getElementById('link-message').textContent"
+        self.assertEqual(page.value(message), "")
+        for wrong, why in (("tab=measure", "tab=map is not in this page"), ("up=", "up=x is not 3 numbers"),
+                           ("show=", "show=x is not in this page")):
+            changed = {"tab=measure": "tab=map", "up=": "up=x&old=", "show=": "show=x&old="}[wrong]
+            page.value(f"location.hash = {link.replace(wrong, changed)!r}")
+            page.wait_for(f"{message}.includes({why!r})")
+        self.near(page.value("axial.view.camera.position.toArray()"), eye, 1e-6)
+        page.value(f"location.hash = {link!r}")
+        page.wait_for(f"{message} === ''")
+        self.assertEqual(page.errors, [])
 
     def test_without_a_cloud_the_mesh_is_shown_alone(self):
         self.put("mesh.ply", *wall(z=1.1))

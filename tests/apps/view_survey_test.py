@@ -271,8 +271,9 @@ class Page(SurveyCase):
         return pixels(base64.b64decode(page.send("Page.captureScreenshot", clip=clip)["data"]))
 
     def test_the_map_shows_its_layers_and_coordinates(self):
-        page = self.opened()
+        page = self.opened(downloads=self.folder)
         self.check_layers(page)
+        self.check_slider(page)
         self.check_points(page)
         self.check_early_points(page)
         self.check_changes(page)
@@ -302,6 +303,40 @@ class Page(SurveyCase):
         for x, y in ((0.15, 0.15), (-0.15, 0.15), (0.15, -0.15), (-0.15, -0.15)):
             self.assertEqual(set(self.colors(page, *self.screen(x, y))), {UNCHANGED})
 
+    def check_slider(self, page):
+        """On the right of the line is the second layer; the layers themselves are the oracle."""
+        left, right = self.screen(-0.2, 0.05), self.screen(0.2, 0.05)
+        seen = {}
+        for layer in ("views", "height"):
+            self.choose(page, layer)
+            seen[layer] = [self.colors(page, *place) for place in (left, right)]
+        page.value("(choice => { choice.value = 'views'; choice.onchange(); })(document.getElementById('map-compare'))")
+        for cut, expected in ((50, ("height", "views")), (0, ("views", "views")), (100, ("height", "height"))):
+            page.value("(slider => { slider.value = %d; slider.oninput(); })(document.getElementById('map-slider'))"
+                       % cut)
+            page.wait_for("!axial.map.asked")
+            self.assertEqual([self.colors(page, *place) for place in (left, right)],
+                             [seen[layer][k] for k, layer in enumerate(expected)], cut)
+        page.value("(choice => { choice.value = ''; choice.onchange(); })(document.getElementById('map-compare'))")
+        self.assertTrue(page.value("document.getElementById('map-slider').hidden"))
+        self.choose(page, "significant")
+
+    def check_profile(self, page):
+        """Along the path, the heights are those of the tilted plane, for which interpolation is exact."""
+        self.assertGreater(page.value("document.querySelector('#profile polyline').points.length"), 20)
+        page.value("document.getElementById('profile-save').click()")
+        file = self.path("profile.csv")
+        for _ in range(100):
+            if os.path.exists(file) and read(file).endswith(b"\n"):
+                break
+            page.wait_for("new Promise(resolve => setTimeout(() => resolve(true), 50))")
+        header, *rows = read(file).decode().splitlines()
+        self.assertEqual(header, "along,x,y,height")
+        rows = [tuple(map(float, row.split(","))) for row in rows]
+        for along, x, y, found in rows:
+            self.assertAlmostEqual(found, UP + height(x - EAST), delta=0.001)
+        self.assertAlmostEqual(rows[-1][0], (0.4 ** 2 + 0.25 ** 2) ** 0.5, delta=0.002)
+
     def check_points(self, page):
         places = [(-0.2, 0.1), (0.2, -0.15)]
         for x, y in places:
@@ -315,6 +350,7 @@ class Page(SurveyCase):
                 self.assertAlmostEqual(value, expected, delta=0.001)  # a pixel is 0.8 mm
         self.assertAlmostEqual(float(shown[9].split()[0]), (0.4 ** 2 + 0.25 ** 2) ** 0.5, delta=0.002)
         self.assertAlmostEqual(float(shown[10].split()[0]), 0.08, delta=0.002)
+        self.check_profile(page)
         page.value("document.getElementById('map-show').click()")
         x, y = places[1]
         for value, expected in zip(page.value("axial.state.picked.map((v, k) => v + axial.scene.origin[k] - "

@@ -19,8 +19,8 @@ def refined(out):
 def overview(given, out):
     found = refined(out)
     used = [image for image in found.get("images", []) if image.get("observations")]
-    rows = [("Photographs with a pose", len(used)),
-            ("Sparse points", found.get("points_after")), ("Observations of sparse points", found.get("observations_after")),
+    rows = [("Photographs with a pose", len(used)), ("Sparse points", found.get("points_after")),
+            ("Observations of sparse points", found.get("observations_after")),
             ("Reprojection error [px]", f"{found['rms_after_px']:.3f}" if "rms_after_px" in found else None)]
     scene = shown(out)
     rows += [("Points of the cloud", scene.get("all_points")), ("Date", given.date or None)]
@@ -47,7 +47,8 @@ def lens_rows(out):
 
 # Numbers of a port: the field of the housing file, the name, the factor to the unit, and the unit.
 NUMBERS = (("distance_m", "distance of the glass from the entrance pupil", 1e3, "mm"),
-           ("inner_radius_m", "inner radius of the dome", 1e3, "mm"), ("thickness_m", "thickness of the glass", 1e3, "mm"),
+           ("inner_radius_m", "inner radius of the dome", 1e3, "mm"),
+           ("thickness_m", "thickness of the glass", 1e3, "mm"),
            ("n_air", "refractive index of the air", 1, ""), ("n_glass", "refractive index of the glass", 1, ""),
            ("n_water", "refractive index of the water", 1, ""), ("normal", "normal of the port", 1, ""),
            ("center_m", "centre of the dome", 1e3, "mm"))

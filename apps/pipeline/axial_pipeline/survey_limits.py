@@ -62,6 +62,7 @@ def versions(given, entries):
         seen.setdefault(entry["version"] or "version not stated", []).append(entry["name"])
     rows = ((", ".join(names), version) for version, names in seen.items())
     commands = "".join(code(shlex.join(without_folders(word) for word in entry["command"])) for entry in entries)
-    return (table(rows, ("steps", "version of the program")) + paragraph("The command, with paths shortened to their last "
-            "names:") + code(shlex.join(map(without_folders, command_of(given)))) +
+    return (table(rows, ("steps", "version of the program")) +
+            paragraph("The command, with paths shortened to their last names:") +
+            code(shlex.join(map(without_folders, command_of(given)))) +
             paragraph("The commands of the steps:") + commands)

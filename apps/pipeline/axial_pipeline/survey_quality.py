@@ -20,8 +20,8 @@ def numbers(values):
 def control_tables(found):
     rows = [(row["name"], row["use"], row["photographs"], numbers(row["residual_mm"]),
              numbers(row["expected_sigma_mm"])) for row in control.rows_of(found)]
-    return (paragraph(f"{found['targets']} targets at {found['observations']} places, {found['rms_px']:.3f} px root mean "
-                      "square.") +
+    return (paragraph(f"{found['targets']} targets at {found['observations']} places, {found['rms_px']:.3f} px "
+                      "root mean square.") +
             table(rows, ("bar or control point", "use", "photographs", "found minus stated [mm]",
                          "expected sigma [mm]"), "Residuals: of a bar its length, of a point x, y and z. Entries with "
                   "the use \"check\" had no part in the result") +
@@ -50,7 +50,8 @@ def accuracy_rows(evaluation):
             yield f"Distance of the cloud from the true mesh, {name}", f"{1e3 * accuracy[key]:.3f} mm"
     for percent, value in accuracy.get("percentiles", {}).items():
         if percent in ("90", "99"):
-            yield f"Distance of the cloud from the true mesh, {percent} % of the points are nearer", f"{1e3 * value:.3f} mm"
+            yield (f"Distance of the cloud from the true mesh, {percent} % of the points are nearer",
+                   f"{1e3 * value:.3f} mm")
 
 
 def color_rows(found):

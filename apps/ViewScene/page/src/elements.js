@@ -15,6 +15,22 @@ export function make(name, attributes = {}, ...children) {
   return element;
 }
 
+/** An element of SVG with attributes and children. */
+export function draw(name, attributes, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  element.append(...children);
+  return element;
+}
+
+/** Saves a text as a file. */
+export function save(name, text) {
+  const link = make("a", { href: URL.createObjectURL(new Blob([text], { type: "text/csv" })),
+                           download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
 /** A table of rows; the first cell of a row is its title. */
 export function table(rows, className = "") {
   return make("table", {}, ...rows.map(([title, ...cells]) => make(

@@ -4,6 +4,7 @@ import { loadAll, loadScene } from "./data.js";
 import { Colours } from "./colours.js";
 import { byId, make, table } from "./elements.js";
 import { drawOverlay } from "./overlay.js";
+import { startLinks } from "./link.js";
 import { Paths } from "./paths.js";
 import { listPhotographs, showPoint } from "./photographs.js";
 import { largestError } from "./project.js";
@@ -15,7 +16,7 @@ const state = { tab: "point", picked: null, keyboard: false };
 const count = value => value.toLocaleString("en-US");
 
 // The buttons of the tabs that this scene has.
-const tabs = () => [...document.querySelectorAll("nav button:not([hidden])")];
+const tabs = () => [...document.querySelectorAll("nav [data-tab]:not([hidden])")];
 
 function choose(tab) {
   state.tab = tab;
@@ -94,7 +95,7 @@ function start(scene) {
   byId("larger").onclick = resize(1.4);
   byId("smaller").onclick = resize(1 / 1.4);
   byId("reset").onclick = () => { view.cameras.choose(-1); view.reset(); };
-  for (const button of document.querySelectorAll("nav button"))
+  for (const button of document.querySelectorAll("nav [data-tab]"))
     button.onclick = () => choose(button.dataset.tab);
   listKeys(view, paths, pick);
   listPhotographs(scene, number => view.lookFrom(scene.cameras[number], number));
@@ -108,6 +109,7 @@ function start(scene) {
   const colours = new Colours(scene, view.cloud, () => view.move());
   document.querySelector("[data-tab=residuals]").hidden = !scene.residuals;
   const residuals = scene.residuals ? new Residuals(scene) : null;
+  startLinks({ view, map, choose }, () => state.tab, () => tabs().map(button => button.dataset.tab));
   return { view, paths, map, colours, residuals };
 }
 

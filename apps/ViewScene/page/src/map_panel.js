@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tab "Map": layers with their legends, picked points, and what changed between two surveys.
+import { comparison } from "./compare.js";
 import { byId, make, table } from "./elements.js";
 import { legendOf } from "./legend.js";
 import { sceneOf } from "./map_values.js";
 import { MapView } from "./maps.js";
 import { quantity } from "./measure.js";
+import { showProfile } from "./profile.js";
 
 const metres = value => value === null ? "none" : `${value.toFixed(3)} m`;
 
@@ -18,7 +20,7 @@ export function startMap(scene, show) {
   }, () => list());
   const list = () => {
     for (const point of view.path) point.height = view.heights.at(point.place);
-    points.replaceChildren(...rowsOf(view.path));
+    points.replaceChildren(...rowsOf(view.path), ...showProfile(view.path, view.heights));
     view.draw();
     aimable();
   };
@@ -30,7 +32,7 @@ export function startMap(scene, show) {
     legend.replaceChildren(...legendOf(layer.legend));
   } }, layer.title));
   byId("map").replaceChildren(
-    make("div", { class: "buttons", role: "group", "aria-label": "Layer" }, ...buttons), legend,
+    make("div", { class: "buttons", role: "group", "aria-label": "Layer" }, ...buttons), legend, ...comparison(view),
     make("h2", {}, "Points"),
     make("p", { class: "hint" }, "Click the map to add a point. Distances are horizontal." +
       (map.axes ? "" : " The files of this map do not say where it lies in 3D.")),

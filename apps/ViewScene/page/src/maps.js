@@ -12,7 +12,8 @@ export class MapView {
   /** `map`: its part of data/scene.js. `picked(place)`: called for a click or a tap, and with null to
    * remove the last place. `loaded()`: called when the heights are loaded. */
   constructor(map, picked, loaded) {
-    Object.assign(this, { map, picked, loaded, path: [], region: null, pointers: new Map(), travelled: 0 });
+    Object.assign(this, { map, picked, loaded, path: [], region: null, other: null, cut: 0.5,
+                          pointers: new Map(), travelled: 0 });
     this.canvas = byId("map-canvas");
     this.images = new Map();
     this.heights = new Heights(null, null);
@@ -35,18 +36,20 @@ export class MapView {
     this.draw();
   }
 
-  /** The picture of the layer, which is loaded when it is first drawn; null until then. */
-  get image() {
-    let image = this.images.get(this.layer.id);
+  /** The picture of a layer, which is loaded when it is first drawn; null until then. */
+  imageOf(layer) {
+    let image = this.images.get(layer.id);
     if (!image) {
       image = new Image();
       image.onload = () => this.draw();
       image.onerror = () => console.error(`${image.src} cannot be read`);
-      image.src = this.layer.file;
-      this.images.set(this.layer.id, image);
+      image.src = layer.file;
+      this.images.set(layer.id, image);
     }
     return image.complete && image.naturalWidth ? image : null;
   }
+
+  get image() { return this.imageOf(this.layer); }
 
   get size() { return [this.canvas.clientWidth, this.canvas.clientHeight]; }
 
@@ -191,16 +194,17 @@ export class MapView {
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.clearRect(0, 0, this.canvas.width, this.canvas.height);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    this.paintLayer(context);
+    this.paintLayer(context, this.layer);
+    if (this.other) this.paintOther(context);
     this.paintMarks(context);
     scaleBar(context, this.scale, this.size);
   }
 
   // Draws the visible part of the layer, because browsers do not draw very large pictures.
-  paintLayer(context) {
-    const image = this.image;
+  paintLayer(context, layer) {
+    const image = this.imageOf(layer);
     if (!image) return;
-    const [left, top, width, height] = this.layer.place, [columns, rows] = this.layer.size;
+    const [left, top, width, height] = layer.place, [columns, rows] = layer.size;
     const perPixel = [this.scale * width / columns, this.scale * height / rows];
     const [u, v] = this.screenOf([left, top]);
     const cut = (begin, pixel, count, side) => [Math.max(0, Math.floor(-begin / pixel)),
@@ -212,6 +216,20 @@ export class MapView {
     context.imageSmoothingQuality = "high";
     context.drawImage(image, first, upper, last - first, lower - upper, u + first * perPixel[0],
                       v + upper * perPixel[1], (last - first) * perPixel[0], (lower - upper) * perPixel[1]);
+  }
+
+  // The other layer on the right of the line of the slider (compare.js).
+  paintOther(context) {
+    const [width, height] = this.size, line = this.cut * width;
+    context.save();
+    context.beginPath();
+    context.rect(line, 0, width - line, height);
+    context.clip();
+    context.clearRect(line, 0, width - line, height);
+    this.paintLayer(context, this.other);
+    context.restore();
+    context.fillStyle = "#fff";
+    context.fillRect(line - 1, 0, 2, height);
   }
 
   paintMarks(context) {

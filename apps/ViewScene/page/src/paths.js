@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tab "Measure": paths of picked points, their lengths and areas, saved as CSV.
-import { byId, make, table } from "./elements.js";
+import { byId, make, save, table } from "./elements.js";
 import { areaOf, csv, quantity, segmentsOf, total } from "./measure.js";
 import { surfaceOf } from "./volume.js";
 
@@ -75,11 +75,4 @@ export class Paths {
 // A surface with holes has less area than the whole one.
 function rugosityText({ rugosity, covered }) {
   return rugosity === null ? "–" : rugosity.toFixed(3) + (covered < 0.99 ? " of the covered part" : "");
-}
-
-function save(name, text) {
-  const link = make("a", { href: URL.createObjectURL(new Blob([text], { type: "text/csv" })),
-                           download: name });
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tab "Colours": what RestoreColors found, and photographs as they were taken and without water.
-import { byId, make, table } from "./elements.js";
+import { byId, draw, make, table } from "./elements.js";
 
 const LIGHTS = { sun: "daylight", lamp: "lamps that move with the camera" };
 const CHANNELS = ["red", "green", "blue"], COLORS = ["#f07070", "#5fc46f", "#6fa8ff"];
@@ -25,14 +25,6 @@ const findings = colors => [
   make("h2", {}, "Water"), table(colors.channels.flatMap(rowsOf), "number"),
   make("p", { class: "hint" }, colors.light === "sun" ? "± is one standard deviation."
     : "On one way. The light of the lamps is a grid over image and distance, which starts from this loss.")];
-
-/** An element of SVG with attributes and children. */
-function draw(name, attributes, ...children) {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", name);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-  element.append(...children);
-  return element;
-}
 
 const WIDTH = 340, HEIGHT = 190, LEFT = 34, RIGHT = 8, TOP = 8, BOTTOM = 32; // of the chart
 
