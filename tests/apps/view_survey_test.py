@@ -274,6 +274,7 @@ class Page(SurveyCase):
         page = self.opened(downloads=self.folder)
         self.check_layers(page)
         self.check_slider(page)
+        self.check_link(page)
         self.check_points(page)
         self.check_early_points(page)
         self.check_changes(page)
@@ -320,6 +321,28 @@ class Page(SurveyCase):
         page.value("(choice => { choice.value = ''; choice.onchange(); })(document.getElementById('map-compare'))")
         self.assertTrue(page.value("document.getElementById('map-slider').hidden"))
         self.choose(page, "significant")
+
+    def check_link(self, page):
+        """A link leads to the layer and the part of the map."""
+        shown = "[axial.state.tab, axial.map.layer.id, ...axial.map.centre, axial.map.scale]"
+        page.value("axial.map.zoom(2, 100, 100)")
+        page.click_on("#link")
+        linked, link = page.value(shown), page.value("location.hash")
+        page.value("history.replaceState(null, '', '#')")
+        self.choose(page, "ortho")
+        page.value("axial.map.fit()")
+        page.value(f"location.hash = {link!r}")
+        page.wait_for("axial.map.layer.id === 'significant' && !axial.map.asked")
+        self.assertEqual(page.value(shown)[:2], linked[:2])
+        # The address has twelve significant digits.
+        self.near(page.value(shown)[2:4], linked[2:4], 1e-4)
+        self.assertAlmostEqual(page.value(shown)[4] / linked[4], 1, delta=1e-8)
+        page.value("axial.map.fit()")
+        page.value(f"location.hash = {link.replace('layer=significant', 'layer=none')!r}")
+        page.wait_for("!document.getElementById('link-message').hidden")
+        self.assertIn("layer=none is not in this page",
+                      page.value("document.getElementById('link-message').textContent"))
+        page.value("document.getElementById('link-message').hidden = true")
 
     def check_profile(self, page):
         """Along the path, the heights are those of the tilted plane, for which interpolation is exact."""

@@ -4,7 +4,7 @@
 import { byId } from "./elements.js";
 
 const GROUPS = { points: "cloud", mesh: "mesh", cameras: "cameras" };
-const text = numbers => numbers.map(value => +value.toPrecision(9)).join(",");
+const text = numbers => numbers.map(value => +value.toPrecision(12)).join(",");
 
 /** The fragment of the view. `map`: the view of the map, or null. */
 export function fragmentOf({ view, map, tab }) {
