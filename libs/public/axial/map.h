@@ -114,7 +114,7 @@ struct MapFiles {
   std::filesystem::path shades;    // GeoTIFF (MapKind::shades)
   std::filesystem::path contours;  // GeoJSON of write_contours(); needs `heights`
   std::filesystem::path picture;   // JPEG of draw_overview(); needs `colors`
-  // GeoPackage and DXF of write_contour_copies(); need `contours`.
+  // GeoPackage and DXF of write_contours(); need `contours`.
   std::filesystem::path contour_package = {}, contour_drawing = {};
   std::vector<FurtherFiles> further = {};
 
