@@ -15,7 +15,7 @@ namespace {
 struct Raw {
   std::string input;
   io::SceneOptions scene;
-  double least_part = 2;  // [%]
+  double least_part = 2, join_overlap = 50;  // [%]
 };
 
 void declare(OptionList& list, Raw& raw, Settings& settings) {
@@ -42,6 +42,18 @@ void declare(OptionList& list, Raw& raw, Settings& settings) {
                         "with --from-photographs: parts of a label on the map with less than this "
                         "share of its area in the photograph are left out [%]")
       .range(0, 50)
+      .add_choice(
+          "join", &settings.join.join,
+          {{"none", labels::Join::none},
+           {"name", labels::Join::name},
+           {"overlap", labels::Join::overlap}},
+          "with --from-photographs: unite polygons of one class that show one object: those "
+          "with the same attributes.name, or those that overlap on the map")
+      .add_with_default(
+          "join-overlap", &raw.join_overlap,
+          "with --join overlap: polygons of one object have this share of the smaller "
+          "one in common [%]")
+      .range(1, 100)
       .add_max_memory();
   io::declare_scene_options(list, raw.scene);
 }
@@ -55,7 +67,9 @@ void require_one_direction(const ParsedOptions& parsed, const Settings& settings
   if (settings.from_map.empty())
     for (const char* option : {"class-field", "masks"}) refuse(option, "--from-map");
   else
-    refuse("least-part", "--from-photographs");
+    for (const char* option : {"least-part", "join", "join-overlap"})
+      refuse(option, "--from-photographs");
+  if (settings.join.join != labels::Join::overlap) refuse("join-overlap", "--join overlap");
 }
 
 void convert(const Raw& raw, Options& options) {
@@ -72,6 +86,7 @@ void convert(const Raw& raw, Options& options) {
       break;
     }
   settings.least_part = raw.least_part / 100;
+  settings.join.least_overlap = raw.join_overlap / 100;
   map::take_place(options.parsed, settings.place);
 }
 

@@ -6,6 +6,7 @@
 
 #include "axial/survey.h"
 #include "base/program.h"
+#include "labels/joined_labels.h"
 #include "map/map_place.h"
 
 namespace axial::apps {
@@ -20,6 +21,7 @@ struct Settings {
   std::string class_field;       // of from_map; empty: the usual ones
   std::filesystem::path masks;   // folder for pictures of from_map's labels; empty: none
   double least_part = 0.02;      // of a label of from_photographs: share of its pixels
+  labels::JoinOptions join;      // of labels of from_photographs
 };
 
 struct Options {

@@ -100,8 +100,11 @@ void to_map(const Ground& ground, const Context& context) {
     else if (carried[i].missing > kMuch)
       torn.push_back(name);
     if (carried[i].coarseness > kCoarse) coarse.push_back(name);
-    on_map.push_back({photograph, std::move(carried[i].label), std::move(carried[i].heights)});
+    if (!is_empty(carried[i]))
+      on_map.push_back({photograph, std::move(carried[i].label), std::move(carried[i].heights)});
   }
+  const std::size_t carried_count = on_map.size();
+  on_map = labels::joined_labels(ground.surface, std::move(on_map), settings.join);
   warn_of(lost, "the map shows none of it");
   warn_of(torn, "more than a tenth of it has no surface");
   warn_of(coarse,
@@ -111,6 +114,8 @@ void to_map(const Ground& ground, const Context& context) {
   map::write_labels({files[0], files[1]}, on_map, ground.crs);
   log_info("{} of {} labels are on the map: {}, {}", drawn.size() - lost.size(), drawn.size(),
            files[0].string(), files[1].string());
+  if (settings.join.join != labels::Join::none)
+    log_info("{} labels of photographs are {} on the map", carried_count, on_map.size());
 }
 
 }  // namespace axial::apps

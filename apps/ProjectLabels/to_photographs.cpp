@@ -111,12 +111,12 @@ void write_masks(const Ground& ground, std::span<const labels::LabelledPhotograp
                  const labels::Categories& categories, const Context& context) {
   ProgressCounter progress(context.stage("Writing masks"), photographs.size());
   write_folder(ground.settings.masks, [&](const fs::path& staging) {
-    for (const auto& photograph : photographs) {
-      const fs::path file = staging / mask_name(photograph.name);
-      make_folder(file.parent_path());
-      io::write_png(file, mask_of(photograph, categories));
+    for (const auto& photograph : photographs)
+      make_folder((staging / mask_name(photograph.name)).parent_path());
+    parallel_for(photographs.size(), [&](std::size_t i) {
+      io::write_png(staging / mask_name(photographs[i].name), mask_of(photographs[i], categories));
       progress.add();
-    }
+    });
   });
   warn_of_other_masks(ground, photographs);
 }

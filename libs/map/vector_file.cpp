@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "private/gdal_calls.h"
 #include "private/ogr_handles.h"
+#include "private/polygon_shapes.h"
 
 namespace axial::map {
 namespace {
@@ -79,28 +80,6 @@ Conversion conversion_to(const std::string& crs, OGRLayerH layer, const fs::path
   if (!conversion)
     fail_in(file, "its coordinate reference system cannot be converted to that of the map");
   return conversion;
-}
-
-geometry::Ring ring_of(OGRGeometryH line) {
-  geometry::Ring ring;
-  for (int k = 0; k < OGR_G_GetPointCount(line); ++k) {
-    const Eigen::Vector2d corner(OGR_G_GetX(line, k), OGR_G_GetY(line, k));
-    if (ring.empty() || corner != ring.back()) ring.push_back(corner);
-  }
-  if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
-  return ring;
-}
-
-// Adds a polygon, or all parts of several.
-void add_parts(OGRGeometryH geometry, Area& area) {
-  const int count = OGR_G_GetGeometryCount(geometry);
-  if (wkbFlatten(OGR_G_GetGeometryType(geometry)) == wkbMultiPolygon) {
-    for (int i = 0; i < count; ++i) add_parts(OGR_G_GetGeometryRef(geometry, i), area);
-    return;
-  }
-  std::vector<geometry::Ring> part;
-  for (int i = 0; i < count; ++i) part.push_back(ring_of(OGR_G_GetGeometryRef(geometry, i)));
-  if (!part.empty()) area.parts.push_back(std::move(part));
 }
 
 void check_rings(const Area& area, const fs::path& file) {
@@ -181,7 +160,7 @@ std::string first_value(OGRFeatureH feature, std::initializer_list<const char*> 
 
 Area area_of(const FoundFeature& found, const fs::path& file) {
   Area area{found.name, {}};
-  add_parts(found.shape, area);
+  add_parts(found.shape, area.parts);
   check_rings(area, file);
   check_places(area, file);
   return area;

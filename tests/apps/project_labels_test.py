@@ -161,6 +161,33 @@ class ToMap(LabelsTest):
                                     (top + height, corners[2][1])):
                 self.assertAlmostEqual(value, expected, delta=0.3)
 
+    def test_polygons_of_one_object_are_united(self):
+        """The left part of a plot is drawn in a photograph, and its right part in another one."""
+        (left, low), (right, high) = PLOT[0], PLOT[2]
+        images, annotations = [], []
+        for number, (begin, end, name) in enumerate(((left, 0.02, "one"), (-0.03, right, "one"), (left, right, "two"))):
+            images.append({"id": number, "file_name": names()[number], "width": WIDTH, "height": HEIGHT})
+            corners = [pixel(x, y, CENTRES[number]) for x, y in ((begin, low), (end, low), (end, high), (begin, high))]
+            annotations.append({"id": number, "image_id": number, "category_id": 3, "attributes": {"name": name},
+                                "segmentation": [[value for corner in corners for value in corner]]})
+        write(self.path("work", "drawn.json"), json.dumps(
+            {"images": images, "annotations": annotations, "categories": [{"id": 3, "name": "coral"}]}))
+        half = 0.5 * DISTANCE / FOCAL
+        for join, joined in (("name", 2), ("overlap", 1)):
+            said = self.succeeds(*self.project("from-photographs", "drawn.json", "--join", join)).stdout
+            self.assertIn(f"3 labels of photographs are {joined} on the map", said)
+            found = self.features()
+            self.assertEqual(len(found), joined)
+            self.assertEqual(found[0]["properties"]["photograph"], "; ".join(names()[:4 - joined]))
+            (corners, *_), = found[0]["geometry"]["coordinates"]
+            for axis, least, most in ((0, left, right), (1, -high, -low)):
+                values = [corner[axis] for corner in corners]
+                self.assertAlmostEqual(min(values), least, delta=half)
+                self.assertAlmostEqual(max(values), most, delta=half)
+            self.assertEqual({corner[2] for corner in corners}, {-DISTANCE})
+        self.refuses("--join-overlap is only for --join overlap",
+                     *self.project("from-photographs", "drawn.json", "--join", "name", "--join-overlap", "30"))
+
     def test_the_geopackage_has_a_layer_for_each_shape_and_is_read(self):
         self.succeeds(*self.project("from-map", "plots.geojson"))
         shutil.move(self.path("work", "out.json"), self.path("work", "seen.json"))
