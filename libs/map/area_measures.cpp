@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "geometry/convex_part.h"
 #include "geometry/faces.h"
+#include "geometry/vertex_bends.h"
 
 namespace axial::map {
 
@@ -53,15 +54,31 @@ using Corners = std::span<const Eigen::Vector3d>;
 using Points = std::vector<Eigen::Vector3d>;
 
 // The volume between a convex piece of a face and the plane where the piece is above (`side` 1) or
-// below (-1) the plane. Negative for faces that are turned down.
+// below (-1) the plane.
 double volume_beside(const HeightPlane& plane, Corners piece, double side, Points& part) {
   const auto distance = [&](const Eigen::Vector3d& x) { return side * plane.height_of(x); };
   geometry::convex_part(piece, distance, part);
   double sum = 0;
   for (std::size_t k = 2; k < part.size(); ++k)
-    sum += (part[k - 1] - part[0]).cross(part[k] - part[0]).z() *
+    sum += std::abs((part[k - 1] - part[0]).cross(part[k] - part[0]).z()) *
            (distance(part[0]) + distance(part[k - 1]) + distance(part[k]));
   return sum / 6;
+}
+
+// What noise with the standard deviation `sigma` adds to the mean height above a plane, of the part
+// above it, where the surface is at the height `height`: E max(0, h + n) - max(0, h).
+double added_by_noise(double height, double sigma) {
+  if (!(sigma > 0)) return 0;
+  const double t = std::abs(height) / sigma;
+  const double density = std::exp(-t * t / 2) / std::sqrt(2 * std::numbers::pi);
+  return sigma * (density - t * std::erfc(t / std::numbers::sqrt2) / 2);
+}
+
+double length_of(const geometry::Ring& ring) {
+  double length = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i)
+    length += (ring[(i + 1) % ring.size()] - ring[i]).norm();
+  return length;
 }
 
 // Places along the rings, evenly.
@@ -70,8 +87,7 @@ std::vector<Eigen::Vector2d> places_on_rim(std::span<const geometry::Ring> rings
     return ring[(i + 1) % ring.size()];
   };
   double length = 0;
-  for (const geometry::Ring& ring : rings)
-    for (std::size_t i = 0; i < ring.size(); ++i) length += (next(ring, i) - ring[i]).norm();
+  for (const geometry::Ring& ring : rings) length += length_of(ring);
   const double step = length / count;
   std::vector<Eigen::Vector2d> places;
   double at = step / 2;  // of the next place, from the corner on
@@ -85,15 +101,15 @@ std::vector<Eigen::Vector2d> places_on_rim(std::span<const geometry::Ring> rings
   return places;
 }
 
-constexpr int kBinSide = 8,
-              kBins = 128;  // [px] of the grid of FaceBins; bins along the longer side
-
-// The grid of the bins of faces.
-MapGrid grid_of(const Mesh& mesh) {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(vertex);
-  const auto extent = static_cast<double>(box.sizes().head<2>().maxCoeff());
-  return grid_around(mesh, {}, extent > 0 ? extent / (kBinSide * kBins) : 1);
+// Whether a piece is a line on the map, as what is left beside a face that hides another one.
+bool is_thin(Corners piece) {
+  constexpr double kWidth = 1e-7;  // [m]
+  double twice = 0, length = 0;
+  for (std::size_t k = 2; k < piece.size(); ++k)
+    twice += std::abs((piece[k - 1] - piece[0]).cross(piece[k] - piece[0]).z());
+  for (const Eigen::Vector3d& corner : piece)
+    length = std::max(length, (corner - piece[0]).head<2>().norm());
+  return twice <= kWidth * length;
 }
 
 }  // namespace
@@ -101,24 +117,38 @@ MapGrid grid_of(const Mesh& mesh) {
 // What the pieces of the faces above a part add up to.
 struct AreaSums {
   AreaMoments moments;
-  double up = 0, down = 0;  // projected areas of faces that are turned up and down
-  double surface = 0, above = 0, below = 0;
+  double surface = 0, seen = 0, above = 0, below = 0;
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  double spacing = 0, variance = 0;  // sums over the seen surface, weighted by area
+  double added = 0;                  // to `above` and to `below` by noise
+
+  // Of the face of a piece: the distance of its vertices, and their variance along the normal.
+  struct OfFace {
+    double spacing, variance;
+  };
 
   // `memory`: for the parts of the piece.
-  void add(Corners piece, const HeightPlane& rim, Points& memory) {
-    for (const Eigen::Vector3d& corner : piece) {
-      lowest = std::min(lowest, corner.z());
-      highest = std::max(highest, corner.z());
-    }
+  void add_seen(Corners piece, const OfFace& face, const HeightPlane& rim, Points& memory) {
+    // As large as the noise that makes as much of itself as the noise that the height has.
+    static const double kNoisyHeight = std::sqrt(3);
+    if (!is_thin(piece))
+      for (const Eigen::Vector3d& corner : piece) {
+        lowest = std::min(lowest, corner.z());
+        highest = std::max(highest, corner.z());
+      }
     for (std::size_t k = 2; k < piece.size(); ++k) {
       Eigen::Matrix3d corners;
       corners << piece[0], piece[k - 1], piece[k];
       const Eigen::Vector3d twice =
           (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0));
-      surface += twice.norm() / 2;
-      (twice.z() > 0 ? up : down) += std::abs(twice.z()) / 2;
-      moments.add(twice.z() / 2, corners);
+      const double area = twice.norm() / 2, planar = std::abs(twice.z()) / 2;
+      seen += area;
+      spacing += area * face.spacing;
+      variance += area * face.variance;
+      if (!(planar > 0)) continue;
+      moments.add(planar, corners);
+      added += planar * added_by_noise(rim.height_of(corners.rowwise().mean()),
+                                       kNoisyHeight * std::sqrt(face.variance) * area / planar);
     }
     above += volume_beside(rim, piece, 1, memory);
     below += volume_beside(rim, piece, -1, memory);
@@ -128,21 +158,46 @@ struct AreaSums {
     moments.area += other.moments.area;
     moments.first += other.moments.first;
     moments.second += other.moments.second;
-    up += other.up;
-    down += other.down;
     surface += other.surface;
+    seen += other.seen;
     above += other.above;
     below += other.below;
+    spacing += other.spacing;
+    variance += other.variance;
+    added += other.added;
     lowest = std::min(lowest, other.lowest);
     highest = std::max(highest, other.highest);
   }
-
-  // Whether faces are above the polygon, and more of them turned up than down, by more than
-  // rounding.
-  bool has_surface() const { return up - down > 1e-6 * (up + down); }
 };
 
+namespace {
+
+double area_of_piece(Corners piece) {
+  Eigen::Vector3d twice = Eigen::Vector3d::Zero();
+  for (std::size_t k = 2; k < piece.size(); ++k)
+    twice += (piece[k - 1] - piece[0]).cross(piece[k] - piece[0]);
+  return twice.norm() / 2;
+}
+
+// The standard deviation of the volumes by independent noise of the vertices. `rim`: length of the
+// polygon's rim [m].
+double noise_of_volume(const AreaSums& sums, double rim) {
+  // The plane through the rim is fitted to a line of vertices, and may be tilted.
+  constexpr double kTilted = 2;
+  const double spacing = sums.spacing / sums.seen, area = sums.moments.area;
+  const double height = sums.variance / sums.seen * std::pow(sums.seen / area, 2);
+  const double surface = height * spacing * spacing * area,
+               plane = kTilted * height * area * area * spacing / rim;
+  return std::sqrt(surface + plane + sums.added * sums.added);
+}
+
+}  // namespace
+
 double AreaMeasures::rugosity() const {
+  return plane.is_known() ? seen / planar : kNotKnown;
+}
+
+double AreaMeasures::whole_rugosity() const {
   return plane.is_known() ? surface / planar : kNotKnown;
 }
 
@@ -169,8 +224,8 @@ AreaMeter::AreaMeter(const Mesh& mesh, const Eigen::Vector3d& origin)
     : mesh_(mesh),
       origin_(origin),
       surface_(mesh),
-      grid_(grid_of(mesh)),
-      bins_(mesh, {}, grid_, kBinSide) {
+      faces_(mesh),
+      bends_(geometry::vertex_bends(mesh)) {
   top_ = -std::numeric_limits<double>::infinity();
   for (const Eigen::Vector3f& vertex : mesh.vertices)
     top_ = std::max(top_, static_cast<double>(vertex.z()));
@@ -178,7 +233,18 @@ AreaMeter::AreaMeter(const Mesh& mesh, const Eigen::Vector3d& origin)
 }
 
 std::uint64_t AreaMeter::bytes(const Mesh& mesh) {
-  return geometry::bytes_of_surface(mesh) + FaceBins::bytes(mesh, {}, grid_of(mesh), kBinSide);
+  constexpr std::uint64_t kOfVertex = sizeof(float) + sizeof(Eigen::Vector3f) +
+                                      sizeof(Eigen::Vector3d) + sizeof(int);  // of vertex_bends()
+  return geometry::bytes_of_surface(mesh) + SeenFaces::bytes(mesh) +
+         kOfVertex * mesh.vertices.size();
+}
+
+double AreaMeter::variance_at(std::uint32_t face) const {
+  constexpr double kNeighbours = 6;
+  double sum = 0;
+  for (const std::uint32_t vertex : mesh_.faces[face])
+    sum += std::pow(static_cast<double>(bends_[vertex]), 2);
+  return sum / 3 / (1 + 1 / kNeighbours);
 }
 
 AreaMeasures AreaMeter::measure(const Area& area) const {
@@ -187,9 +253,12 @@ AreaMeasures AreaMeter::measure(const Area& area) const {
   double rims = 0;
   for (const auto& part : area.parts) rims += add_part(part, found, sums);
   found.rim = rims / static_cast<double>(area.parts.size());
-  if (!sums.has_surface()) return found;
-  found.planar = sums.moments.area;
   found.surface = sums.surface;
+  if (!(sums.moments.area > 0)) return found;
+  found.planar = sums.moments.area;
+  found.seen = sums.seen;
+  found.spacing = sums.spacing / sums.seen;
+  found.noise = std::sqrt(sums.variance / sums.seen);
   found.plane = fitted(sums.moments);
   found.plane.middle += origin_.head<2>();
   found.plane.level += origin_.z();
@@ -197,6 +266,10 @@ AreaMeasures AreaMeter::measure(const Area& area) const {
   found.highest = sums.highest + origin_.z();
   found.above = sums.above;
   found.below = sums.below;
+  double rim = 0;
+  for (const auto& part : area.parts)
+    for (const geometry::Ring& ring : part) rim += length_of(ring);
+  if (std::isfinite(sums.above)) found.volume_noise = noise_of_volume(sums, rim);
   return found;
 }
 
@@ -213,36 +286,29 @@ double AreaMeter::add_part(std::span<const geometry::Ring> rings, AreaMeasures& 
   found.polygon += pieces.area();
   double share = 0;
   const HeightPlane rim = rim_of(local, share);
-  const std::vector<std::uint32_t> faces = faces_in(box);
+  const std::vector<std::uint32_t> faces = faces_.faces_in(box);
   constexpr std::size_t kChunk = 1 << 15;
   std::vector<AreaSums> chunks((faces.size() + kChunk - 1) / kChunk);
   parallel_for(chunks.size(), [&](std::size_t chunk) {
     geometry::PolygonPieces::Scratch scratch;
     Points memory;
+    std::vector<SeenFaces::Hidden> hidden;
+    AreaSums& of_chunk = chunks[chunk];
     const std::size_t end = std::min(faces.size(), (chunk + 1) * kChunk);
-    for (std::size_t i = chunk * kChunk; i < end; ++i)
-      pieces.clip(geometry::corners_of(mesh_, faces[i]), scratch,
-                  [&](Corners piece) { chunks[chunk].add(piece, rim, memory); });
+    for (std::size_t i = chunk * kChunk; i < end; ++i) {
+      faces_.find_hidden(faces[i], box, hidden);
+      const AreaSums::OfFace face{std::sqrt(geometry::area_vector(mesh_, faces[i]).norm()),
+                                  variance_at(faces[i])};
+      pieces.clip(geometry::corners_of(mesh_, faces[i]), scratch, [&](Corners piece) {
+        of_chunk.surface += area_of_piece(piece);
+        for_seen_parts(piece, hidden,
+                       [&](Corners part) { of_chunk.add_seen(part, face, rim, memory); });
+      });
+    }
   });
   for (const AreaSums& chunk : chunks) sums.add(chunk);
   if (!rim.is_known()) sums.above = sums.below = kNotKnown;
   return share;
-}
-
-std::vector<std::uint32_t> AreaMeter::faces_in(const Eigen::AlignedBox2d& box) const {
-  std::vector<std::uint32_t> faces;
-  for (std::size_t bin = 0; bin < bins_.blocks(); ++bin) {
-    const cv::Rect at = bins_.pixels(bin);
-    const Eigen::AlignedBox2d of_bin(
-        Eigen::Vector2d(grid_.left + at.x * grid_.pixel, grid_.top - at.br().y * grid_.pixel),
-        Eigen::Vector2d(grid_.left + at.br().x * grid_.pixel, grid_.top - at.y * grid_.pixel));
-    if (!box.intersects(of_bin)) continue;
-    const auto in_bin = bins_.faces(bin);
-    faces.insert(faces.end(), in_bin.begin(), in_bin.end());
-  }
-  std::ranges::sort(faces);
-  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-  return faces;
 }
 
 HeightPlane AreaMeter::rim_of(std::span<const geometry::Ring> rings, double& share) const {

@@ -11,17 +11,34 @@
 
 namespace axial::map {
 
+// A number for a table, with its name and its standard deviation. NaN: not known.
+struct AreaValue {
+  std::string name;
+  double value = kNotKnown, sigma = kNotKnown;
+  int digits = 6;         // behind the point, for `value`
+  bool has_sigma = true;  // false: the table has no column for `sigma`
+};
+
 struct MeasuredArea {
   Area area;
   AreaMeasures measures;
+  AreaMeasures smoothed;  // of the mesh geometry::smoothed(): what the resolution changes
+  std::vector<AreaValue> more = {};  // the same names for all areas
 };
 
+// The numbers of an area, with their standard deviations, which have three parts: by the scale,
+// with `length_sigma`, the standard deviation of a length as a share of it; by the resolution, the
+// difference from the number of the smoothed mesh; and of the mean height and of volumes by noise
+// (AreaMeasures::noise, AreaMeasures::volume_noise). That of the polygon's area is not known
+// without `length_sigma`. Coordinates and shares have none.
+std::vector<AreaValue> values_of(const MeasuredArea& one, double length_sigma);
+
 // Writes a row for each area, as CSV in UTF-8 with a header (docs/measure.md), and as GeoPackage
-// with the polygons. A number that is not known is left empty. `length_sigma`: the standard
-// deviation of a length, as a share of it; 0: not known, and columns of standard deviations are
-// left out. `crs`: WKT of the coordinates; empty: none. The GeoPackage states 2000-01-01 as the
-// date of its last change, so that the same areas give the same bytes. Both files are written
-// together (write_together()). Error that names a file that cannot be written.
+// with the polygons: values_of(), and MeasuredArea::more. A standard deviation stands in a column
+// of its own. A number that is not known is left empty. `length_sigma`: 0: not known. `crs`: WKT of
+// the coordinates; empty: none. The GeoPackage states 2000-01-01 as the date of its last change, so
+// that the same areas give the same bytes. Both files are written together (write_together()).
+// Error that names a file that cannot be written.
 struct AreaFiles {
   std::filesystem::path csv, package;
 };

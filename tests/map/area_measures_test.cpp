@@ -84,26 +84,110 @@ TEST(AreaMeasures, OfACapAreThoseOfTheSphere) {
   EXPECT_NEAR(found.highest, high, 1e-6);
 }
 
-// A table over the ground: its upper side, its lower side and the ground below it.
-TEST(AreaMeasures, OverhangsCountOnce) {
-  Mesh mesh = graph(2, [](double, double) { return 0.0; });
-  const auto add_square = [&](float height, bool is_up) {
+// A square of width 1 at a height, at which side of it is above.
+void add_square(Mesh& mesh, float height, bool is_up, float tilt = 0) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const auto& [x, y] : {std::pair(-0.5f, -0.5f), {0.5f, -0.5f}, {0.5f, 0.5f}, {-0.5f, 0.5f}})
+    mesh.vertices.emplace_back(x, y, height + tilt * x);
+  for (const auto& [a, b, c] : {std::array{0u, 1u, 2u}, {0u, 2u, 3u}})
+    mesh.faces.push_back(is_up ? std::array{first + a, first + b, first + c}
+                               : std::array{first + a, first + c, first + b});
+}
+
+const Area kWide{"all", {{{{-0.9, -0.9}, {0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}}}}};
+
+// A table over the ground, with and without its lower side: what is below it is not seen.
+TEST(AreaMeasures, ATableHidesTheGround) {
+  for (const bool has_lower_side : {true, false}) {
+    Mesh mesh = graph(2, [](double, double) { return 0.0; });
+    add_square(mesh, 0.4f, true);
+    if (has_lower_side) add_square(mesh, 0.3f, false);
+    const AreaMeasures found = AreaMeter(mesh, Eigen::Vector3d::Zero()).measure(kWide);
+    EXPECT_NEAR(found.planar, 1.8 * 1.8, 1e-6);
+    EXPECT_NEAR(found.seen, 1.8 * 1.8, 1e-6);
+    EXPECT_NEAR(found.surface, 1.8 * 1.8 + (has_lower_side ? 2 : 1), 1e-6);
+    EXPECT_NEAR(found.above, 0.4, 1e-6);  // of 1 x 1 x 0.4
+    EXPECT_NEAR(found.below, 0, 1e-6);
+    EXPECT_NEAR(found.plane.level, 0.4 / (1.8 * 1.8), 1e-6);
+    EXPECT_NEAR(found.highest - found.lowest, 0.4, 1e-6);
+  }
+}
+
+// A square through the ground, with the slope 0.8: the ground hides the half that is lower. The
+// order of the faces does not matter.
+TEST(AreaMeasures, SurfacesThatCutEachOtherAreSeenAboveTheirLine) {
+  for (const bool square_first : {true, false}) {
+    Mesh mesh;
+    if (square_first) add_square(mesh, 0, true, 0.8f);
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (const auto& [x, y] : {std::pair(-0.5f, -0.5f), {0.5f, -0.5f}, {0.5f, 0.5f}, {-0.5f, 0.5f}})
-      mesh.vertices.emplace_back(x, y, height);
-    for (const auto& [a, b, c] : {std::array{0u, 1u, 2u}, {0u, 2u, 3u}})
-      mesh.faces.push_back(is_up ? std::array{first + a, first + b, first + c}
-                                 : std::array{first + a, first + c, first + b});
-  };
-  add_square(0.4f, true);
-  add_square(0.3f, false);
-  const AreaMeasures found =
-      AreaMeter(mesh, Eigen::Vector3d::Zero())
-          .measure({"all", {{{{-0.9, -0.9}, {0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}}}}});
-  EXPECT_NEAR(found.planar, 1.8 * 1.8, 1e-6);
-  EXPECT_NEAR(found.surface, 1.8 * 1.8 + 2, 1e-6);
-  EXPECT_NEAR(found.above, 0.1, 1e-6);  // of the plate of 1 x 1 x 0.1
+    const Mesh level = graph(7, [](double, double) { return 0.0; });
+    mesh.vertices.insert(mesh.vertices.end(), level.vertices.begin(), level.vertices.end());
+    for (const auto& [a, b, c] : level.faces)
+      mesh.faces.push_back({first + a, first + b, first + c});
+    if (!square_first) add_square(mesh, 0, true, 0.8f);
+    const AreaMeasures found = AreaMeter(mesh, Eigen::Vector3d::Zero()).measure(kWide);
+    const double steep = std::sqrt(1 + 0.8 * 0.8);
+    EXPECT_NEAR(found.planar, 1.8 * 1.8, 1e-6);
+    EXPECT_NEAR(found.seen, 1.8 * 1.8 - 0.5 + 0.5 * steep, 1e-6);
+    EXPECT_NEAR(found.surface, 1.8 * 1.8 + steep, 1e-6);
+    EXPECT_NEAR(found.above, 0.5 * 0.5 * 0.4, 1e-6);  // of a wedge
+    EXPECT_NEAR(found.lowest, 0, 1e-6);
+  }
+}
+
+// The same surface twice counts once, and so do three layers of a slope, as of a mesh that fits
+// badly.
+TEST(AreaMeasures, LayersCountOnce) {
+  const auto slope = [](double x, double y) { return 0.5 * x + 0.25 * y; };
+  Mesh mesh = graph(13, slope);
+  for (const double lower : {0.0, 0.01}) {
+    const Mesh layer =
+        graph(lower > 0 ? 10 : 13, [&](double x, double y) { return slope(x, y) - lower; });
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), layer.vertices.begin(), layer.vertices.end());
+    for (const auto& [a, b, c] : layer.faces)
+      mesh.faces.push_back({first + a, first + b, first + c});
+  }
+  const AreaMeasures found = AreaMeter(mesh, Eigen::Vector3d::Zero()).measure(disc({0.1, 0}, 0.7));
+  const double steep = std::sqrt(1 + 0.25 + 0.0625);
+  EXPECT_NEAR(found.planar, found.polygon, 1e-6);
+  EXPECT_NEAR(found.rugosity(), steep, 1e-6);
+  EXPECT_NEAR(found.whole_rugosity(), 3 * steep, 1e-5);
+  EXPECT_NEAR(found.above, 0, 1e-6);
   EXPECT_NEAR(found.below, 0, 1e-6);
+}
+
+// A whole sphere on the ground: its upper half is seen, which hangs over a disc of the ground.
+TEST(AreaMeasures, OfASphereTheUpperHalfIsSeen) {
+  constexpr int kRings = 16, kSides = 32;
+  const double radius = 0.4, height = 0.4;
+  Mesh mesh = graph(4, [](double, double) { return 0.0; });
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (int j = 0; j <= kRings; ++j)
+    for (int i = 0; i < kSides; ++i) {
+      const double polar = kPi * j / kRings, around = 2 * kPi * i / kSides;
+      mesh.vertices.emplace_back(Eigen::Vector3d(radius * std::sin(polar) * std::cos(around),
+                                                 radius * std::sin(polar) * std::sin(around),
+                                                 height + radius * std::cos(polar))
+                                     .cast<float>());
+    }
+  const auto at = [&](int j, int i) {
+    return first + static_cast<std::uint32_t>(j * kSides + i % kSides);
+  };
+  for (int j = 0; j < kRings; ++j)
+    for (int i = 0; i < kSides; ++i) {
+      mesh.faces.push_back({at(j, i), at(j + 1, i), at(j + 1, i + 1)});
+      mesh.faces.push_back({at(j, i), at(j + 1, i + 1), at(j, i + 1)});
+    }
+  const AreaMeasures found = AreaMeter(mesh, Eigen::Vector3d::Zero()).measure(kWide);
+  // A circle of 32 corners is too small by 0.64 %, and a sphere of such circles by twice that.
+  const double shadow = kPi * radius * radius;
+  EXPECT_NEAR(found.planar, 1.8 * 1.8, 1e-6);
+  EXPECT_NEAR(found.seen, 1.8 * 1.8 + shadow, 0.015 * 2 * shadow);
+  EXPECT_NEAR(found.surface, 1.8 * 1.8 + 4 * shadow, 0.015 * 4 * shadow);
+  const double volume = shadow * height + 2 * kPi / 3 * std::pow(radius, 3);
+  EXPECT_NEAR(found.above, volume, 0.015 * volume);
+  EXPECT_NEAR(found.highest, height + radius, 1e-6);
 }
 
 TEST(AreaMeasures, OfHolesAndOutsideAreTold) {
@@ -141,8 +225,8 @@ TEST(AreaMeasures, PartsHaveRimsOfTheirOwn) {
   EXPECT_NEAR(found.planar, found.polygon, 1e-6);
 }
 
-// A closed box alone: its lower side is as large as its upper side.
-TEST(AreaMeasures, OfAClosedBodyAloneAreNone) {
+// A closed box alone: its upper side is seen.
+TEST(AreaMeasures, OfAClosedBodyAloneAreThoseOfItsUpperSide) {
   Mesh mesh = graph(3, [](double, double) { return 1.0; });
   Mesh lower = graph(3, [](double, double) { return 0.0; });
   for (const auto& [a, b, c] : lower.faces) {
@@ -152,8 +236,9 @@ TEST(AreaMeasures, OfAClosedBodyAloneAreNone) {
   mesh.vertices.insert(mesh.vertices.end(), lower.vertices.begin(), lower.vertices.end());
   const AreaMeasures found =
       AreaMeter(mesh, Eigen::Vector3d::Zero()).measure(disc({0.1, 0.1}, 0.5));
-  EXPECT_EQ(found.planar, 0);
-  EXPECT_TRUE(std::isnan(found.plane.level));
+  EXPECT_NEAR(found.planar, found.polygon, 1e-6);
+  EXPECT_NEAR(found.surface, 2 * found.polygon, 1e-6);
+  EXPECT_NEAR(found.lowest, 1, 1e-6);
 }
 
 }  // namespace
