@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string>
 
+#include "base/error.h"
 #include "base/output_name.h"
 #include "base/version.h"
 #include "settings.h"
@@ -19,6 +20,10 @@ void declare(OptionList& list, Raw& raw, Settings& settings) {
       .add("areas", &settings.areas,
            "polygons: GeoJSON, GeoPackage or shape file with one layer of polygons")
       .required("the file of polygons")
+      .add("earlier", &settings.earlier,
+           "mesh of an earlier survey in the same coordinates, for the change of each polygon")
+      .add_switch("allow-other-place", &settings.allow_other_place,
+                  "with --earlier: compare surveys that seem to show different places")
       .add("output-file,o", &settings.output,
            "begin of the names of the tables, which go on with .csv and .gpkg (<input>_areas)")
       .output_file();
@@ -32,6 +37,8 @@ void declare(OptionList& list, Raw& raw, Settings& settings) {
 
 void convert(const Raw& raw, Options& options) {
   Settings& settings = options.settings;
+  if (settings.allow_other_place && settings.earlier.empty())
+    fail("--allow-other-place is only for --earlier");
   settings.output = output_or(settings.output, without_known_extension(settings.mesh) += "_areas",
                               "--output-file");
   if (settings.output.extension() == ".csv" || settings.output.extension() == ".gpkg")

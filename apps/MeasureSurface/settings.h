@@ -10,6 +10,8 @@ namespace axial::apps {
 
 struct Settings {
   std::filesystem::path mesh, areas;
+  std::filesystem::path earlier;   // the mesh of an earlier survey in the same frame; empty: none
+  bool allow_other_place = false;  // CompareOptions::allow_other_place
   map::PlaceOptions place;
   std::filesystem::path output;  // the names of the tables without ".csv" and ".gpkg"
   double length_sigma = 0;       // of lengths, as a share; 0: not known
