@@ -57,10 +57,6 @@ map::ArchiveFacts facts_of(const Settings& settings, const survey::Survey& surve
   facts.inputs = {{"scene", scene}, {"mesh", settings.mesh}};
   if (survey.housing) facts.inputs.emplace_back("housing", io::housing_file(settings.survey.files));
   facts.image_noise = settings.image_noise;
-  if (settings.epsg > 0)
-    facts.scale = "coordinates of EPSG:" + std::to_string(settings.epsg);
-  else if (!survey.frame.is_world())
-    facts.scale = "the scene has an offset of its world";
   return facts;
 }
 
@@ -95,8 +91,9 @@ std::vector<Stale> stale_of(const Settings& settings) {
       {at(".profiles.gpkg"), map::kinds::kProfiles, {at(".profiles.csv"), at(".profiles.dxf")}}};
 }
 
-// Copies in the folder of the maps that state a map of this run.
+// Copies in the folder of the maps that state that they are of the maps of this output.
 std::vector<Stale> stale_copies_of(const Settings& settings) {
+  constexpr std::array kMaps{"ortho.tif", "dem.tif", "views.tif", "sigma.tif", "hillshade.tif"};
   std::vector<Stale> found;
   const std::string begin = settings.output.filename().string() + ".";
   const fs::path folder = settings.output.parent_path();
@@ -104,7 +101,9 @@ std::vector<Stale> stale_copies_of(const Settings& settings) {
   for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored)) {
     const fs::path& file = entry.path();
     if (!file.filename().string().starts_with(begin) || file.extension() != ".tif") continue;
-    if (!map::stated_source(file).starts_with(begin)) continue;
+    const std::string source = map::stated_source(file);
+    if (std::ranges::none_of(kMaps, [&](const char* end) { return source == begin + end; }))
+      continue;
     Stale stale{file, "", {}};
     if (file.filename().string().starts_with(begin + "archive.")) {
       stale.companions = {fs::path(file).replace_extension(".tfw")};

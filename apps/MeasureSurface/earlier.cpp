@@ -23,10 +23,11 @@ map::AreaValue change_of_surface(const map::MeasuredArea& earlier, const map::Me
   map::AreaValue change{"surface_change_m2", map::kNotKnown, map::kNotKnown, 6};
   const double shares = std::abs(later.measures.planar - earlier.measures.planar);
   if (!later.measures.plane.is_known() || shares > kPart * later.measures.polygon) return change;
-  const map::AreaValue before = named(values_of(earlier, length_sigma), "seen_m2"),
-                       after = named(values_of(later, length_sigma), "seen_m2");
+  const map::AreaValue before = named(values_of(earlier, 0), "seen_m2"),
+                       after = named(values_of(later, 0), "seen_m2");
   change.value = after.value - before.value;
-  change.sigma = std::hypot(before.sigma, after.sigma);
+  // Both surveys have one scale, because they are in one frame.
+  change.sigma = std::hypot(before.sigma, after.sigma, 2 * length_sigma * change.value);
   return change;
 }
 
@@ -37,12 +38,19 @@ std::vector<map::AreaValue> values_of_change(const compare::AreaChange& change,
     if (!is_known) return map::AreaValue{name, map::kNotKnown, map::kNotKnown, 6};
     return map::AreaValue{name, value, std::hypot(sigma, 3 * length_sigma * value), 6};
   };
+  // Changes below what can be found are not known to be 0.
+  const auto found = [&](const char* name, const auto& part) {
+    return volume(name, part.volume, part.volume > 0 ? part.sigma : map::kNotKnown);
+  };
+  const auto length = [&](const char* name, double value, double sigma, int digits) {
+    return map::AreaValue{name, value, std::hypot(sigma, length_sigma * value), digits};
+  };
   return {{"compared_m2", change.compared, map::kNotKnown, 6, false},
-          volume("gain_m3", change.came.volume, change.came.sigma),
-          volume("loss_m3", change.gone.volume, change.gone.sigma),
+          found("gain_m3", change.came),
+          found("loss_m3", change.gone),
           volume("net_m3", change.net, change.net_sigma),
-          {"mean_change_m", change.mean, change.mean_sigma, 5},
-          {"largest_change_m", change.largest, change.largest_sigma, 4}};
+          length("mean_change_m", change.mean, change.mean_sigma, 5),
+          length("largest_change_m", change.largest, change.largest_sigma, 4)};
 }
 
 // Warns of polygons that the surveys do not both fill. Error if they are compared in none.

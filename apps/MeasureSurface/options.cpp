@@ -30,7 +30,7 @@ void declare(OptionList& list, Raw& raw, Settings& settings) {
   map::declare_place(list, "polygons", settings.place);
   list.add_with_default("length-sigma", &raw.length_sigma,
                         "standard deviation of lengths [%], as RefinePoses states it (0: not "
-                        "known; the tables then have no standard deviations)")
+                        "known; the standard deviations are then without that of the scale)")
       .range(0, 100)
       .add_max_memory();
 }

@@ -107,13 +107,25 @@ void warn_of_other_masks(const Ground& ground,
                 ground.settings.masks.string(), others.size(), others.front().string());
 }
 
+// The labels of each pixel, its mask, and the encoded mask.
+std::uint64_t bytes_of_largest_mask(std::span<const labels::LabelledPhotograph> photographs) {
+  constexpr std::uint64_t kOfPixel = 4;
+  std::uint64_t largest = 1;
+  for (const auto& one : photographs)
+    largest = std::max(
+        largest, static_cast<std::uint64_t>(one.width) * static_cast<std::uint64_t>(one.height));
+  return kOfPixel * largest;
+}
+
 void write_masks(const Ground& ground, std::span<const labels::LabelledPhotograph> photographs,
                  const labels::Categories& categories, const Context& context) {
   ProgressCounter progress(context.stage("Writing masks"), photographs.size());
   write_folder(ground.settings.masks, [&](const fs::path& staging) {
     for (const auto& photograph : photographs)
       make_folder((staging / mask_name(photograph.name)).parent_path());
-    parallel_for(photographs.size(), [&](std::size_t i) {
+    const std::size_t at_once =
+        context.memory().items(bytes_of_largest_mask(photographs), thread_count(), "a mask");
+    for_each_in_flight(photographs.size(), at_once, [&](std::size_t i) {
       io::write_png(staging / mask_name(photographs[i].name), mask_of(photographs[i], categories));
       progress.add();
     });

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 #include <utility>
 
+#include "base/disjoint_sets.h"
 #include "base/naming.h"
 #include "map/united_parts.h"
 
@@ -26,26 +26,12 @@ bool is_polygon(const map::Label& label) {
   return !label.parts.empty() && label.points.empty();
 }
 
-// For each label the first label of its object.
-class Objects {
- public:
-  explicit Objects(std::size_t count) : first_(count) {
-    std::iota(first_.begin(), first_.end(), std::size_t{0});
-  }
+double common_share(const map::Label& a, const map::Label& b) {
+  return naming("labels '" + a.name + "' and '" + b.name + "'",
+                [&] { return map::common_share(a.parts, b.parts); });
+}
 
-  std::size_t of(std::size_t label) const {
-    while (first_[label] != label) label = first_[label];
-    return label;
-  }
-
-  void join(std::size_t a, std::size_t b) {
-    const auto [low, high] = std::minmax({of(a), of(b)});
-    first_[high] = low;
-  }
-
- private:
-  std::vector<std::size_t> first_;
-};
+using Objects = DisjointSets<std::size_t>;  // the labels of each object
 
 Objects objects_of(const std::vector<LabelFromPhotograph>& labels, const JoinOptions& options) {
   Objects objects(labels.size());
@@ -55,11 +41,11 @@ Objects objects_of(const std::vector<LabelFromPhotograph>& labels, const JoinOpt
     for (std::size_t k = i + 1; k < labels.size(); ++k) {
       const map::Label &a = labels[i].label, &b = labels[k].label;
       if (a.category != b.category || !is_polygon(a) || !is_polygon(b)) continue;
-      if (objects.of(i) == objects.of(k)) continue;
-      const bool is_one = options.join == Join::name
-                              ? a.name == b.name && a.name != a.category
-                              : boxes[i].intersects(boxes[k]) &&
-                                    map::common_share(a.parts, b.parts) >= options.least_overlap;
+      if (objects.root(i) == objects.root(k)) continue;
+      const bool is_one =
+          options.join == Join::name
+              ? a.name == b.name && a.name != a.category
+              : boxes[i].intersects(boxes[k]) && common_share(a, b) >= options.least_overlap;
       if (is_one) objects.join(i, k);
     }
   return objects;
@@ -95,9 +81,9 @@ std::vector<LabelFromPhotograph> joined_labels(const LabelledSurface& surface,
                                                std::vector<LabelFromPhotograph> labels,
                                                const JoinOptions& options) {
   if (options.join == Join::none) return labels;
-  const Objects objects = objects_of(labels, options);
+  Objects objects = objects_of(labels, options);
   std::vector<std::vector<const LabelFromPhotograph*>> of_first(labels.size());
-  for (std::size_t i = 0; i < labels.size(); ++i) of_first[objects.of(i)].push_back(&labels[i]);
+  for (std::size_t i = 0; i < labels.size(); ++i) of_first[objects.root(i)].push_back(&labels[i]);
   std::vector<LabelFromPhotograph> joined;
   for (const auto& object : of_first) {
     if (object.size() > 1) joined.push_back(united_label(surface, object));

@@ -129,7 +129,9 @@ struct AreaSums {
 
   // `memory`: for the parts of the piece.
   void add_seen(Corners piece, const OfFace& face, const HeightPlane& rim, Points& memory) {
-    // As large as the noise that makes as much of itself as the noise that the height has.
+    // The measured height has the noise s already. At a place in the plane, the mean over this
+    // noise of what a further noise t adds is in proportion to sqrt(s^2 + t^2) - s. It is what the
+    // noise s adds to the true surface if t = sqrt(3) s.
     static const double kNoisyHeight = std::sqrt(3);
     if (!is_thin(piece))
       for (const Eigen::Vector3d& corner : piece) {
@@ -296,10 +298,11 @@ double AreaMeter::add_part(std::span<const geometry::Ring> rings, AreaMeasures& 
     AreaSums& of_chunk = chunks[chunk];
     const std::size_t end = std::min(faces.size(), (chunk + 1) * kChunk);
     for (std::size_t i = chunk * kChunk; i < end; ++i) {
-      faces_.find_hidden(faces[i], box, hidden);
+      bool is_met = false;  // most faces of a thin polygon's box do not meet the polygon
       const AreaSums::OfFace face{std::sqrt(geometry::area_vector(mesh_, faces[i]).norm()),
                                   variance_at(faces[i])};
       pieces.clip(geometry::corners_of(mesh_, faces[i]), scratch, [&](Corners piece) {
+        if (!std::exchange(is_met, true)) faces_.find_hidden(faces[i], box, hidden);
         of_chunk.surface += area_of_piece(piece);
         for_seen_parts(piece, hidden,
                        [&](Corners part) { of_chunk.add_seen(part, face, rim, memory); });

@@ -30,7 +30,7 @@ struct MeasuredArea {
 // with `length_sigma`, the standard deviation of a length as a share of it; by the resolution, the
 // difference from the number of the smoothed mesh; and of the mean height and of volumes by noise
 // (AreaMeasures::noise, AreaMeasures::volume_noise). That of the polygon's area is not known
-// without `length_sigma`. Coordinates and shares have none.
+// without `length_sigma`. Shares, and coordinates but the mean height, have none.
 std::vector<AreaValue> values_of(const MeasuredArea& one, double length_sigma);
 
 // Writes a row for each area, as CSV in UTF-8 with a header (docs/measure.md), and as GeoPackage

@@ -47,7 +47,6 @@ void add_inputs(const Element& root, const ArchiveFacts& facts) {
     lineage.add("source").with("role", role).says(file.filename().string());
   for (const auto& [port, count] : facts.ports)
     lineage.add("photographs").with("port", port).says(std::to_string(count));
-  if (!facts.scale.empty()) lineage.add("scale").says(facts.scale);
 }
 
 void add_place(const Element& root, GDALDatasetH map, const fs::path& heights) {

@@ -16,7 +16,6 @@ namespace axial::map {
 struct ArchiveFacts {
   std::string title;    // of the survey
   std::string program;  // with its version
-  std::string scale;    // where the scale comes from, in words; empty: not known
   // Of the photographs: a kind of port, in words, and how many have it.
   std::vector<std::pair<std::string, std::size_t>> ports = {};
   std::vector<std::pair<std::string, std::filesystem::path>> inputs = {};  // role and file

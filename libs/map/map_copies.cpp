@@ -182,14 +182,14 @@ cv::Size size_of_copy(const MapGrid& grid, int width) {
 }
 
 void require_widths(const CopyOptions& options, const MapGrid& grid) {
+  constexpr double kLess = 0.995;  // the printed number is rounded, and a grid has a margin
   for (const int width : options.widths)
     if (width > grid.columns)
       fail(
           "{} {}: the map has {} columns of {:.4g} m, and wider copies would show nothing new; a "
-          "map "
-          "of this width needs {} {:.3g}",
+          "map of this width needs {} {:.3g}",
           setting("widths"), width, grid.columns, grid.pixel, setting("ground_sample_distance"),
-          grid.pixel * grid.columns / width);
+          kLess * grid.pixel * std::max(1, grid.columns - 2) / width);
 }
 
 std::vector<FurtherFiles> copies_of(const MapFiles& maps, const MapGrid& grid,

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
+#include "base/order_statistics.h"
 #include "geometry/convex_part.h"
 #include "geometry/faces.h"
+#include "map/frame.h"
 
 namespace axial::map {
 namespace {
@@ -20,15 +23,33 @@ constexpr double kInside = 1e-9;      // [m]: faces with a common edge do not hi
 constexpr double kSameHeight = 1e-7;  // [m]: vertices are floats
 constexpr int kBinSide = 8;           // [px] of the grid of the bins
 
-// The grid of the bins: about eight faces for each bin of a square mesh.
+// The box of the mesh without the outermost faces: a face far away would make the bins large. Faces
+// outside of the grid are in the bins at its border.
+Eigen::AlignedBox2d box_of_most(const Mesh& mesh) {
+  constexpr std::size_t kSample = 1 << 16;
+  constexpr double kLow = 0.01, kHigh = 0.99;
+  const std::size_t step = mesh.faces.size() / kSample + 1;
+  std::array<std::vector<double>, 2> values;
+  for (std::size_t f = 0; f < mesh.faces.size(); f += step)
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      values[axis].push_back(mesh.vertices[mesh.faces[f][0]][static_cast<int>(axis)]);
+  Eigen::AlignedBox2d box(Eigen::Vector2d::Zero());
+  for (std::size_t axis = 0; axis < 2 && !values[0].empty(); ++axis) {
+    std::ranges::sort(values[axis]);
+    box.min()[static_cast<int>(axis)] = interpolated_quantile<double>(values[axis], kLow);
+    box.max()[static_cast<int>(axis)] = interpolated_quantile<double>(values[axis], kHigh);
+  }
+  return box;
+}
+
+// The grid of the bins: about eight faces for each bin.
 MapGrid grid_of(const Mesh& mesh) {
-  constexpr double kFaces = 8, kLeast = 16, kMost = 1024;
-  const double bins =
-      std::clamp(std::sqrt(static_cast<double>(mesh.faces.size()) / kFaces), kLeast, kMost);
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(vertex);
-  const auto extent = static_cast<double>(box.sizes().head<2>().maxCoeff());
-  return grid_around(mesh, {}, extent > 0 ? extent / (kBinSide * bins) : 1);
+  constexpr double kFaces = 8, kMostAlong = 4096;
+  const Eigen::AlignedBox2d box = box_of_most(mesh);
+  const double bins = static_cast<double>(mesh.faces.size()) / kFaces + 1;
+  const double width =
+      std::max(std::sqrt(box.sizes().prod() / bins), box.sizes().maxCoeff() / kMostAlong);
+  return grid_over(box, width > 0 ? width / kBinSide : 1);
 }
 
 Eigen::AlignedBox2d box_of(const Corners& corners) {
@@ -91,7 +112,9 @@ std::uint64_t SeenFaces::bytes(const Mesh& mesh) {
   return FaceBins::bytes(mesh, {}, grid_of(mesh), kBinSide);
 }
 
-std::vector<std::uint32_t> SeenFaces::faces_in(const Eigen::AlignedBox2d& box) const {
+template <class Takes>
+std::vector<std::uint32_t> SeenFaces::faces_in_bins(const Eigen::AlignedBox2d& box,
+                                                    const Takes& takes) const {
   std::vector<std::uint32_t> faces;
   const double width = kBinSide * grid_.pixel;
   const int columns = (grid_.columns + kBinSide - 1) / kBinSide,
@@ -106,11 +129,15 @@ std::vector<std::uint32_t> SeenFaces::faces_in(const Eigen::AlignedBox2d& box) c
       const auto in_bin =
           bins_.faces(static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
                       static_cast<std::size_t>(column));
-      faces.insert(faces.end(), in_bin.begin(), in_bin.end());
+      std::ranges::copy_if(in_bin, std::back_inserter(faces), takes);
     }
   std::ranges::sort(faces);
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   return faces;
+}
+
+std::vector<std::uint32_t> SeenFaces::faces_in(const Eigen::AlignedBox2d& box) const {
+  return faces_in_bins(box, [](std::uint32_t) { return true; });
 }
 
 void SeenFaces::find_hidden(std::uint32_t face, const Eigen::AlignedBox2d& box,
@@ -119,10 +146,11 @@ void SeenFaces::find_hidden(std::uint32_t face, const Eigen::AlignedBox2d& box,
   const Corners corners = geometry::corners_of(mesh_, face);
   const Eigen::AlignedBox2d of_face = box_of(corners);
   const auto own = below(corners, 0);
-  for (const std::uint32_t other : faces_in(of_face.intersection(box))) {
-    if (other == face) continue;
+  const auto is_near = [&](std::uint32_t other) {
+    return other != face && of_face.intersects(box_of(geometry::corners_of(mesh_, other)));
+  };
+  for (const std::uint32_t other : faces_in_bins(of_face.intersection(box), is_near)) {
     const Corners of_other = geometry::corners_of(mesh_, other);
-    if (!of_face.intersects(box_of(of_other))) continue;
     const auto found = below(of_other, other < face ? -kSameHeight : kSameHeight);
     if (!found) continue;
     const auto separates = [](std::span<const Eigen::Vector3d> of) {
@@ -134,10 +162,52 @@ void SeenFaces::find_hidden(std::uint32_t face, const Eigen::AlignedBox2d& box,
   }
 }
 
+namespace {
+
+// Vertical half spaces on both sides of the middle of the longer side of a piece.
+std::array<HalfSpace, 2> halves_of(std::span<const Eigen::Vector3d> piece) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& corner : piece) box.extend(corner);
+  const Eigen::Vector3d normal =
+      box.sizes().x() > box.sizes().y() ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
+  return {HalfSpace{normal, box.center()}, HalfSpace{-normal, box.center()}};
+}
+
+std::vector<SeenFaces::Hidden> hidden_of(std::span<const Eigen::Vector3d> piece,
+                                         std::span<const SeenFaces::Hidden> hidden) {
+  std::vector<SeenFaces::Hidden> found;
+  std::ranges::copy_if(hidden, std::back_inserter(found), [&](const SeenFaces::Hidden& one) {
+    return std::ranges::none_of(one,
+                                [&](const HalfSpace& half) { return is_outside(half, piece); });
+  });
+  return found;
+}
+
+// Below many small faces, the time grows with the square of their number, so a large piece is cut
+// into halves first. Returns false if this does not help.
+bool use_halves(std::span<const Eigen::Vector3d> piece, std::span<const SeenFaces::Hidden> hidden,
+                const std::function<void(std::span<const Eigen::Vector3d>)>& use) {
+  std::array<Points, 2> parts;
+  std::array<std::vector<SeenFaces::Hidden>, 2> of_parts;
+  const std::array<HalfSpace, 2> halves = halves_of(piece);
+  for (std::size_t k = 0; k < 2; ++k) {
+    geometry::convex_part(piece, halves[k], parts[k]);
+    of_parts[k] = hidden_of(parts[k], hidden);
+    if (4 * of_parts[k].size() > 3 * hidden.size()) return false;
+  }
+  for (std::size_t k = 0; k < 2; ++k)
+    if (parts[k].size() > 2) for_seen_parts(parts[k], of_parts[k], use);
+  return true;
+}
+
+}  // namespace
+
 void for_seen_parts(std::span<const Eigen::Vector3d> piece,
                     std::span<const SeenFaces::Hidden> hidden,
                     const std::function<void(std::span<const Eigen::Vector3d>)>& use) {
+  constexpr std::size_t kMany = 64;
   if (hidden.empty()) return use(piece);
+  if (hidden.size() > kMany && use_halves(piece, hidden, use)) return;
   std::vector<Points> parts{{piece.begin(), piece.end()}}, next;
   for (const SeenFaces::Hidden& one : hidden) {
     next.clear();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts of faces that are seen from above, exactly.
+// The parts of faces that are seen from above: exactly, but for 1e-9 m at the edges and 1e-7 m of
+// height.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -43,6 +44,10 @@ class SeenFaces {
                    std::vector<Hidden>& hidden) const;
 
  private:
+  template <class Takes>
+  std::vector<std::uint32_t> faces_in_bins(const Eigen::AlignedBox2d& box,
+                                           const Takes& takes) const;
+
   const Mesh& mesh_;
   MapGrid grid_;
   FaceBins bins_;

@@ -17,7 +17,7 @@ using PolygonParts = std::vector<std::vector<geometry::Ring>>;
 // Error if GEOS cannot compute it.
 double common_share(const PolygonParts& a, const PolygonParts& b);
 
-// The places that are inside of a polygon at least. Polygons that are the same give their corners
+// The places that lie in at least one polygon. Polygons that are the same give their corners
 // in another order. Error if GEOS cannot compute the union.
 PolygonParts united(std::span<const PolygonParts* const> polygons);
 

@@ -90,6 +90,10 @@ class Copies(MapTest):
         write(self.path("work", "scene_map.taglab.old.tif"), self.at("scene_map.dem.tif"))
         self.assertEqual(self.copies(), {"other.taglab.dem.tif", "taglab.old.tif"})
 
+    def test_copies_of_a_map_whose_name_goes_on_are_kept(self):
+        self.succeeds(*self.map("-o", "scene_map.v2", "--preset", "taglab"))
+        self.assertLessEqual({"v2.taglab.dem.tif", "v2.taglab.ortho.tif"}, self.copies())
+
     def test_other_widths(self):
         self.succeeds(*self.map("--widths", "11"))
         whole, copy = self.read_map("dem"), self.read_map("dem_11")

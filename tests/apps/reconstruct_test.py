@@ -91,6 +91,7 @@ class Reconstruct(unittest.TestCase):
         self.assertEqual((out / "page" / "index.html").exists(), "page" in STEPS)
         if "page" in STEPS:
             self.check_page(out)
+            self.assertIn("of the rectangle of the map have a height:", (out / "report.html").read_text())
 
     def check_page(self, out):
         scene = shown_scene(out / "page")

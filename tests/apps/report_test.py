@@ -14,7 +14,7 @@ from pipeline_folder import InFolder, options_of
 from programs import main
 from stand_ins import BROWSER, StandIns
 
-from axial_pipeline import report_pdf, survey_facts, survey_limits, survey_report
+from axial_pipeline import report_html, report_pdf, survey_facts, survey_report
 from axial_pipeline.run_file import write_run
 from axial_pipeline.steps import Step
 
@@ -23,7 +23,7 @@ REFINED = {
     "depth_sigma": 0, "images": [{"name": f"{i}.jpg", "observations": 20, "rms_after_px": 0.1 * i} for i in range(7)],
     "cameras": [{"id": 1, "free": [{"name": "index of water", "unit": "", "value": 1.335, "sigma": 0.0017,
                                     "before": 1.333, "sigma_before": 0.004, "decided_by": "photographs"}]}],
-    "control": {"targets": 3, "observations": 12, "rms_px": 0.2, "left_out": ["target 9: one photograph"],
+    "control": {"targets": 3, "observations": 12, "rms_px": 0.2, "left_out": ["/home/me/bars.txt:3: target 9: one photograph"],
                 "bars": [{"name": "bar 1-2", "use": "check", "photographs": 4,
                           "length_m": {"residual": -0.000125, "expected_sigma": 0.00025}}], "points": []}}
 HOUSING = {"ports": {"main": {"type": "flat", "distance_m": 0.02, "thickness_m": 0.014, "n_water": 1.333,
@@ -70,7 +70,8 @@ class Parts(InFolder):
         heights = base64.b64encode(b"\0\0\1\0\2\0\0\1").decode()  # one of four places has no height
         self.write("out/page/data/heights-0000.js", f'axialData.put("heights",0,"{heights}");\n')
         self.write("out/logs/map.log", "10:00:00 [MapSurface] warning: /home/me/dive/a.ply: few <views>\n" * 2)
-        self.todo = [Step("map", ["/opt/bin/MapSurface", "-i", "/home/me/dive/scene.mvs"], self.out)]
+        self.todo = [Step("map", ["/opt/bin/MapSurface", "-i", "/home/me/dive/scene.mvs"], self.out),
+                     Step("page", ["/opt/bin/ViewScene", "--images=/home/me/my dive/photographs"], self.out)]
 
     def page(self, **changes):
         given = options_of(**{"output": str(self.out), "until": "map", "scale_from": "", "lenses": ["lens"], **changes})
@@ -83,9 +84,9 @@ class Parts(InFolder):
         texts = self.texts(without="texture")
         for text in ("6 of 7 photographs have poses", "PINHOLE", "286, 286, 240, 180", "20 mm", "4.2 mm",
                      "1.335 ± 0.0017", "0.48 %", "not known", "taken as known", "-0.12", "0.25",
-                     "target 9: one photograph", "4.00 m x 3.00 m", "-3.000 m to -2.000 m",
+                     "bars.txt:3: target 9: one photograph", "4.00 m x 3.00 m", "-3.000 m to -2.000 m",
                      "75.0 % of the rectangle of the map have a height: 9.00 m² in the plane of the map",
-                     "The scale comes from targets, bars and control points.",
+                     "No length and no position was given: the scale comes from the refraction at the port alone.",
                      "map: a.ply: few <views> (2 times)", "The step texture was left out by --without."):
             self.assertIn(text, texts)
         self.assertIn("6.jpg", texts)  # the largest error
@@ -98,8 +99,24 @@ class Parts(InFolder):
         self.assertNotIn("/home/me", page)
         self.assertNotIn("/opt", page)
 
-    def test_it_is_the_same_again(self):
-        self.assertEqual(self.page(), self.page())
+    def test_a_page_of_an_earlier_run_says_nothing(self):
+        self.todo = self.todo[:1]
+        texts = "".join(self.texts())
+        self.assertNotIn("Size of the map", texts)
+        self.assertNotIn("Points of the cloud", texts)
+
+    def test_inputs_that_give_the_scale_are_named(self):
+        """The only bar of the run is a check, which gives no scale."""
+        self.assertIn("The scale was given by --scale-from positions:a.csv.",
+                      self.texts(scale_from="positions:/home/me/a.csv"))
+        control = {**REFINED["control"], "bars": [{**REFINED["control"]["bars"][0], "use": "adjusted"}]}
+        self.write("out/refined/report.json", json.dumps({**REFINED, "control": control, "unused": ["bar 5-6: moved"]}))
+        self.assertIn("The scale was given by bars and control points. Not used: bar 5-6: moved.", self.texts())
+
+    def test_warnings_about_features_stand_once(self):
+        self.write("out/logs/features.log", "10:00:00 [reconstruct] warning: a still region\n")
+        self.todo.insert(0, Step("features", ["/opt/bin/colmap"], self.out))
+        self.assertEqual(sum("a still region" in text for text in self.texts()), 1)
 
     def test_damaged_and_missing_files_leave_their_parts_out(self):
         self.write("out/page/data/scene.js", "axialData.scene({")
@@ -115,7 +132,7 @@ class Parts(InFolder):
         given = options_of(output=str(self.out), until="map", lenses=["lens"])
         write_run(self.out / "run.json", given, self.todo, self.out)
         command = json.loads((self.out / "run.json").read_text())["command"]
-        self.assertIn(" ".join(map(survey_limits.without_folders, command)), self.texts())
+        self.assertIn(" ".join(map(report_html.word_without_folders, command)), self.texts())
 
     @unittest.skipUnless(CHROMIUM, "Chromium is not installed")
     def test_it_prints(self):

@@ -49,9 +49,11 @@ TEST_F(MemoryRun, GivesTheMapsAndTheCloudOfFiles) {
   std::map<std::size_t, DepthMap> maps;
   options.output.take_map = [&](std::size_t image, DepthMap map) { maps[image] = std::move(map); };
   use_folder("temporary");
+  const char* const stated = std::getenv("TMPDIR");
+  const std::string before = stated ? stated : "";
   ASSERT_EQ(setenv("TMPDIR", (folder_ / "temporary").c_str(), 1), 0);
   const MemoryResult result = densify(survey_in_memory(), options);
-  unsetenv("TMPDIR");
+  ASSERT_EQ(before.empty() ? unsetenv("TMPDIR") : setenv("TMPDIR", before.c_str(), 1), 0);
   EXPECT_TRUE(fs::is_empty(folder_ / "temporary"));
   EXPECT_TRUE(result.report.cloud.empty());
   EXPECT_TRUE(result.frame.is_world());

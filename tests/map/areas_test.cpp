@@ -106,17 +106,18 @@ TEST_F(Areas, OfATableCanBeReadAgain) {
                {{{20, 0}, {22, 0}, {22, 2}}}}};
   one.measures.polygon = 1.875;
   one.measures.planar = 1.5;
-  one.measures.surface = 3;
+  one.measures.surface = one.measures.seen = 3;
   one.measures.plane.level = -20;
+  one.smoothed = one.measures;
   const AreaFiles files{folder_ / "t.csv", folder_ / "t.gpkg"};
   const std::string crs = crs_of_epsg(32617);
   write_areas(files, std::vector{one}, 0.01, crs);
   const std::string text = read_file(files.csv), bytes = read_file(files.package);
   EXPECT_THAT(text,
               testing::StartsWith("name,polygon_m2,sigma_polygon_m2,planar_m2,sigma_planar_m2,"
-                                  "surface_m2,"));
+                                  "seen_m2,sigma_seen_m2,surface_m2,"));
   EXPECT_THAT(text, HasSubstr("\n\"a, \"\"b\"\"\",1.875000,0.0375000,1.500000,0.0300000,3.000000,"
-                              "0.0600000,2.00000,"));
+                              "0.0600000,3.000000,0.0600000,2.00000,"));
   EXPECT_THAT(text, HasSubstr(",,,,"));  // volumes that are not known
   const auto again = read_areas(files.package, crs);
   ASSERT_EQ(again.size(), 1U);

@@ -3,6 +3,8 @@
 
 import base64
 import html
+import pathlib
+import re
 import string
 
 MOST_BYTES = 3_000_000  # of a picture in the page
@@ -38,6 +40,23 @@ code { font-size: 8.5pt; overflow-wrap: anywhere; }
 $body
 </body></html>
 """)
+
+
+# A path at the begin of a text, or behind one of these signs. A report is published, and the folders of a computer can
+# contain the name of its user.
+FOLDERS = re.compile(r"""(?:(?<=^)|(?<=[\s=:,'"(\[]))/(?:[^\s=:,;'")\]/]+/)+(?=[^\s=:,;'")\]/])""")
+
+
+def without_folders(text):
+    """A text whose paths are shortened to their last names. Of the folders, only the home of the user may have a name
+    with a blank."""
+    home = str(pathlib.Path.home())
+    return FOLDERS.sub("", text if home == "/" else text.replace(home, ""))
+
+
+def word_without_folders(word):
+    """The same of a word of a command, which may be one path with blanks."""
+    return without_folders(re.sub("(^|=)/(?:[^/]+/)+(?=[^/])", r"\1", word))
 
 
 def page(title, sections):

@@ -48,5 +48,5 @@ def print_page(page, pdf, log):
         os.replace(temporary, pdf)
         return ""
     files.clear(temporary)
-    how = f"took more than {MOST_SECONDS} s" if code == 124 else ending(code) if code else "wrote no PDF"
+    how = f"took more than {MOST_SECONDS} s" if code in (124, 137) else ending(code) if code else "wrote no PDF"
     return f"{PROGRAM}: {how}, its output is in {log}"

@@ -7,7 +7,7 @@ import json
 import re
 
 from . import files, model_text
-from .report_html import paragraph, picture, table
+from .report_html import paragraph, picture, table, without_folders
 
 MOST_PHOTOGRAPHS = 5  # with the largest errors, that a table names
 
@@ -16,13 +16,13 @@ def refined(out):
     return files.read_object(out / "refined" / "report.json")
 
 
-def overview(given, out):
+def overview(given, out, scene):
+    """`scene`: what shown() returns."""
     found = refined(out)
     used = [image for image in found.get("images", []) if image.get("observations")]
     rows = [("Photographs with a pose", len(used)), ("Sparse points", found.get("points_after")),
             ("Observations of sparse points", found.get("observations_after")),
             ("Reprojection error [px]", f"{found['rms_after_px']:.3f}" if "rms_after_px" in found else None)]
-    scene = shown(out)
     rows += [("Points of the cloud", scene.get("all_points")), ("Date", given.date or None)]
     return table((name, value) for name, value in rows if value is not None)
 
@@ -30,7 +30,7 @@ def overview(given, out):
 def photographs(out, lines):
     images = [image for image in refined(out).get("images", []) if image.get("rms_after_px") is not None]
     worst = sorted(images, key=lambda image: (-image["rms_after_px"], image["name"]))[:MOST_PHOTOGRAPHS]
-    return "".join(map(paragraph, lines)) + table(
+    return "".join(paragraph(without_folders(line)) for line in lines) + table(
         ((image["name"], image["observations"], f"{image['rms_after_px']:.3f}") for image in worst),
         ("photograph", "observations", "error [px]"), "The photographs with the largest reprojection errors (root "
         "mean square)")
@@ -88,7 +88,7 @@ def cameras(out):
                   "Lenses in air, as used for the results") +
             table((row for name, port in sorted(ports.items()) for row in port_rows(name, port)),
                   ("port", "value", "sigma"), "Housing, as used for the results. Sigma is one standard deviation; a "
-                  "number without sigma was taken as stated") +
+                  "number that the photographs could change is below; a number in neither table was taken as stated") +
             table(estimated_rows(refined(out)), ("estimated number", "unit", "stated ± sigma", "found ± sigma",
                                                  "decided by the"), "Numbers that the photographs could change"))
 
@@ -96,11 +96,12 @@ def cameras(out):
 def shown(out):
     """The description of the page of ViewScene; empty without one."""
     file = out / "page" / "data" / "scene.js"
-    found = re.fullmatch(r"axialData\.scene\((.*)\);?\s*", file.read_text(), re.DOTALL) if file.is_file() else None
     try:
-        return json.loads(found[1]) if found else {}
-    except ValueError:
+        found = re.fullmatch(r"axialData\.scene\((.*)\);?\s*", file.read_text("utf-8"), re.DOTALL)
+        scene = json.loads(found[1]) if found else {}
+    except (OSError, ValueError):
         return {}
+    return scene if isinstance(scene, dict) else {}
 
 
 def coverage(out, heights):
@@ -114,13 +115,13 @@ def coverage(out, heights):
     return 1 - values.count(0) / len(values) if values else None
 
 
-def map_rows(out):
-    for layer in shown(out).get("map", {}).get("layers", []):
+def map_rows(out, scene):
+    for layer in scene.get("map", {}).get("layers", []):
         if layer["id"] == "height":
             legend = layer["legend"]
             yield "Size of the map", f"{layer['place'][2]:.2f} m x {layer['place'][3]:.2f} m"
-            yield "Heights (99 % of the map)", f"{legend['low']:.3f} m to {legend['high']:.3f} m"
-    heights = shown(out).get("map", {}).get("heights")
+            yield "Heights (without the lowest and the highest 1 % of the map)", f"{legend['low']:.3f} m to {legend['high']:.3f} m"
+    heights = scene.get("map", {}).get("heights")
     share = coverage(out, heights) if heights else None
     if share is not None:
         area = heights["place"][2] * heights["place"][3]
@@ -128,16 +129,20 @@ def map_rows(out):
                            "the plane of the map")
 
 
-def layer_pictures(out):
+def layer_pictures(out, scene):
     """The pictures of heights and their expected errors, with the values at the ends of the colours."""
     titles = {"height": "Heights with relief shading", "sigma": "Expected errors of the heights"}
-    for layer in shown(out).get("map", {}).get("layers", []):
+    for layer in scene.get("map", {}).get("layers", []):
         if layer["id"] in titles:
             ends = "{low:.3f} m to {high:.3f} m".format(**layer["legend"])
             yield picture(out / "page" / layer["file"], f"{titles[layer['id']]}, from dark to light: {ends}")
 
 
-def maps(out, entries):
-    if "map" not in [entry["name"] for entry in entries]:
+def maps(given, out, made, scene):
+    """`made`: the names of the steps."""
+    if given.dates and not given.date:
+        return paragraph("The maps are in the reports of the dates, dates/DATE/report.html.")
+    if "map" not in made:
         return paragraph("This run made no map.")
-    return picture(out / "scene_map.jpg", "Orthomosaic") + table(map_rows(out)) + "".join(layer_pictures(out))
+    return (picture(out / "scene_map.jpg", "Orthomosaic") + table(map_rows(out, scene)) +
+            "".join(layer_pictures(out, scene)))

@@ -2,11 +2,9 @@
 """What a reader must know besides the numbers, as parts of report.html: warnings, what was not done, versions and
 commands."""
 
-import re
 import shlex
 
-from . import still_features
-from .report_html import bullets, code, paragraph, table
+from .report_html import bullets, code, paragraph, table, word_without_folders, without_folders
 from .run_file import command_of
 from .step_kinds import KINDS, OF_RESTORING
 
@@ -19,20 +17,12 @@ NOT_ASKED = (("scale_from", "known lengths or positions (--scale-from)"),
              ("restore_colors", "colours without water (--restore-colors)"),
              ("earlier", "a comparison with an earlier survey (--earlier)"),
              ("truth", "a comparison with a true mesh (--truth)"), ("las", "the cloud as LAS (--las)"))
-# A path at the begin of a word, or behind one of these signs: a report is published, and the folders of a computer can
-# contain the name of its user.
-FOLDERS = re.compile(r"""(?:(?<=^)|(?<=[\s=:,'"(]))/(?:[^\s=:,;'")/]+/)+(?=[^\s=:,;'")/])""")
-
-
-def without_folders(text):
-    return FOLDERS.sub("", text)
-
-
-def warnings(out, entries):
+def warnings(given, entries):
     lines = [f"{entry['name']}: {one['text']}" + (f" ({one['times']} times)" if one["times"] > 1 else "")
              for entry in entries for one in entry["warnings"]]
-    lines += [f"features: {line}" for line in still_features.lines_about(out)]
-    return bullets(map(without_folders, lines)) or paragraph("No step warned.")
+    lines = map(without_folders, lines)
+    joint = paragraph("Warnings about the poses are in the report of all dates.") if given.date else ""
+    return joint + (bullets(lines) or paragraph("No step warned."))
 
 
 def skipped_steps(given, made):
@@ -61,8 +51,8 @@ def versions(given, entries):
     for entry in entries:
         seen.setdefault(entry["version"] or "version not stated", []).append(entry["name"])
     rows = ((", ".join(names), version) for version, names in seen.items())
-    commands = "".join(code(shlex.join(without_folders(word) for word in entry["command"])) for entry in entries)
+    commands = "".join(code(shlex.join(map(word_without_folders, entry["command"]))) for entry in entries)
     return (table(rows, ("steps", "version of the program")) +
             paragraph("The command, with paths shortened to their last names:") +
-            code(shlex.join(map(without_folders, command_of(given)))) +
+            code(shlex.join(map(word_without_folders, command_of(given)))) +
             paragraph("The commands of the steps:") + commands)

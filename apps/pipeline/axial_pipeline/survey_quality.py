@@ -2,8 +2,8 @@
 """How good a survey is, as parts of report.html: scale, control, expected errors and changes."""
 
 from . import control, files
-from .report_html import paragraph, picture, table
-from .survey_facts import refined, shown
+from .report_html import paragraph, picture, table, without_folders
+from .survey_facts import refined
 
 RESTORED = "restored/colors.json"
 
@@ -25,22 +25,27 @@ def control_tables(found):
             table(rows, ("bar or control point", "use", "photographs", "found minus stated [mm]",
                          "expected sigma [mm]"), "Residuals: of a bar its length, of a point x, y and z. Entries with "
                   "the use \"check\" had no part in the result") +
-            table(((line,) for line in found.get("left_out", [])), ("left out",)))
+            table(((without_folders(line),) for line in found.get("left_out", [])), ("left out",)))
+
+
+def sources_of_scale(given, found):
+    """The inputs of the adjustment that have lengths. Checks are no input."""
+    if given.scale_from:
+        yield f"--scale-from {without_folders(given.scale_from)}"
+    if any(row["use"] != "check" for row in control.rows_of(found["control"])) if found.get("control") else False:
+        yield "bars and control points"
+    if any(camera["pose"] != "free" for rig in found.get("rigs", []) for camera in rig["cameras"]):
+        yield "the rig (--rig)"
 
 
 def scale(given, out):
     found = refined(out)
-    source = (f"The scale comes from --scale-from {without_folder(given.scale_from)}." if given.scale_from
-              else "The scale comes from targets, bars and control points." if found.get("control")
-              else "No length and no position was given: the scale comes from the refraction at the port alone.")
+    sources = ", ".join(sources_of_scale(given, found))
+    source = (f"The scale was given by {sources}." if sources else
+              "No length and no position was given: the scale comes from the refraction at the port alone.")
+    source += "".join(f" Not used: {without_folders(one)}." for one in found.get("unused", []))
     rows = [("Scale, one standard deviation", share_text(found.get("scale_sigma")))]
     return paragraph(source) + table(rows) + (control_tables(found["control"]) if found.get("control") else "")
-
-
-def without_folder(text):
-    """The words of --scale-from without the folder of a file."""
-    kind, colon, rest = text.partition(":")
-    return f"{kind}{colon}{rest.rsplit('/', 1)[-1]}" if kind == "positions" else text
 
 
 def accuracy_rows(evaluation):
@@ -60,12 +65,12 @@ def color_rows(found):
                f"{100 * found['spread_before']:.1f} %, {100 * found['spread_after']:.1f} %")
 
 
-def error_rows(out, made):
+def error_rows(out, made, scene):
     found = refined(out)
     yield "Scale", share_text(found.get("scale_sigma"))
     yield "Shape, as a share of the distance of the points", share_text(found.get("shape_sigma"))
     yield "Distances of the points from the cameras", share_text(found.get("depth_sigma"))
-    for layer in shown(out).get("map", {}).get("layers", []) if "map" in made else ():
+    for layer in scene.get("map", {}).get("layers", []) if "map" in made else ():
         if layer["id"] == "sigma":
             yield "Heights of the map: 99 % of the places are below", f"{1e3 * layer['legend']['high']:.2f} mm"
     if "evaluate" in made:
@@ -74,8 +79,9 @@ def error_rows(out, made):
         yield from color_rows(files.read_object(out / RESTORED))
 
 
-def errors(out, entries):
-    rows = error_rows(out, [entry["name"] for entry in entries])
+def errors(out, made, scene):
+    """`made`: the names of the steps. `scene`: what shown() returns."""
+    rows = error_rows(out, made, scene)
     return table(rows, ("quantity", "error"), "Errors are standard deviations unless the row names another measure")
 
 
@@ -84,8 +90,8 @@ def amount(part):
     return f"{part['volume']:.6f}{sigma} m³"
 
 
-def changes(out, entries):
-    if "compare" not in [entry["name"] for entry in entries]:
+def changes(out, made):
+    if "compare" not in made:
         return ""
     found = files.read_object(out / "scene.change.json")
     rows = [(name, amount(found[key]), f"{found[key]['area']:.4f} m²" if "area" in found[key] else "")

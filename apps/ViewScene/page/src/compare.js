@@ -5,6 +5,7 @@ import { byId, make } from "./elements.js";
 /** Elements that choose the second layer of the MapView `view` and move the line. */
 export function comparison(view) {
   const slider = byId("map-slider"), { layers } = view.map;
+  slider.value = 100 * view.cut; // a reloaded page may have kept another value
   const choice = make("select", { id: "map-compare", "aria-label": "Layer on the right" },
                       make("option", { value: "" }, "no other layer"),
                       ...layers.map(layer => make("option", { value: layer.id }, layer.title)));

@@ -31,7 +31,7 @@ function oneOf(parts, name, allowed) {
 
 /** What a fragment says. `tabs`, `layers`: names that the page has. Throws an Error that names the wrong part. */
 export function readFragment(fragment, tabs, layers) {
-  const parts = new Map(fragment.slice(1).split("&").map(part => part.split("=")));
+  const parts = new Map(decodeURIComponent(fragment.slice(1)).split("&").map(part => part.split("=")));
   const [eye, target, up] = ["eye", "target", "up"].map(name => numbersOf(parts, name, 3));
   if (!Math.hypot(...up)) throw new Error("up=0,0,0 is no direction");
   if (eye.every((value, k) => value === target[k])) throw new Error("eye and target are the same place");
