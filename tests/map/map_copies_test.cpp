@@ -192,8 +192,7 @@ TEST_F(Copies, TheDescriptionOfAnArchive) {
   errors(cv::Rect(0, 0, grid_.columns / 2, grid_.rows)) = 0.004f;
   write(maps.errors, MapKind::heights, kinds::kErrors, errors);
   write_archive_description(
-      maps,
-      {"a < b & \"c\"", "MapSurface 1", "", {{"flat", 6}}, {{"scene", "folder/scene.mvs"}}, 0.05},
+      maps, {"a < b & \"c\"", "MapSurface 1", {{"flat", 6}}, {{"scene", "folder/scene.mvs"}}, 0.05},
       {"x/m.archive.dem.tif"}, folder_ / "m.xml");
   const std::string text = read_file(folder_ / "m.xml");
   for (const char* part :
