@@ -15,6 +15,7 @@
 #include "base/same_file.h"
 #include "earlier.h"
 #include "geometry/faces.h"
+#include "geometry/joined_vertices.h"
 #include "geometry/vertex_bends.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
@@ -64,6 +65,7 @@ Mesh read_mesh(const fs::path& file, const map::WorldAxes& axes, const Near& nea
   const std::size_t unseen = remove_marked_faces(mesh);
   if (unseen > 0) log_info("{} faces are left out: they are marked as unseen", unseen);
   if (mesh.faces.empty()) fail_in(file, "has no faces, or all are marked as unseen");
+  geometry::join_vertices(mesh);  // for the noise, which is found from neighbours
   for (Eigen::Vector3f& vertex : mesh.vertices)
     vertex = (axes.axes * vertex.cast<double>() + (near.at - near.origin)).cast<float>();
   turn_up(mesh, file);

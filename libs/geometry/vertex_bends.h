@@ -12,7 +12,7 @@ namespace axial::geometry {
 // (vertex_normals()). The neighbours are the other corners of its faces, weighted by the number of
 // faces. 0 for a vertex without a face. Independent errors with the standard deviation s give a
 // bend with the variance s^2 (1 + 1/n), with n neighbours. Precondition: the vertices of the faces
-// exist.
+// exist, and the faces share them (join_vertices()).
 std::vector<float> vertex_bends(const Mesh& mesh);
 
 // The mesh whose vertices are moved along their normals to the mean of themselves and of six
