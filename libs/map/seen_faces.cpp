@@ -83,17 +83,17 @@ bool is_outside(const HalfSpace& half, std::span<const Eigen::Vector3d> corners)
 }
 
 // Adds the parts of `piece` that are not in all half spaces.
-void cut(const Points& piece, const SeenFaces::Hidden& hidden, std::vector<Points>& parts) {
+void cut(Points&& piece, const SeenFaces::Hidden& hidden, std::vector<Points>& parts) {
   constexpr std::size_t kLeast = 3;
   for (const HalfSpace& half : hidden)
-    if (is_outside(half, piece)) return parts.push_back(piece);
+    if (is_outside(half, piece)) return parts.push_back(std::move(piece));
   Points rest = piece, part;
   for (const HalfSpace& half : hidden) {
     geometry::convex_part(rest, half, part);
     std::swap(rest, part);
-    if (rest.size() < kLeast) return parts.push_back(piece);
+    if (rest.size() < kLeast) return parts.push_back(std::move(piece));
   }
-  rest = piece;
+  rest = std::move(piece);
   for (const HalfSpace& half : hidden) {
     geometry::convex_part(
         rest, [&](const Eigen::Vector3d& x) { return -half(x); }, part);
@@ -205,13 +205,13 @@ bool use_halves(std::span<const Eigen::Vector3d> piece, std::span<const SeenFace
 void for_seen_parts(std::span<const Eigen::Vector3d> piece,
                     std::span<const SeenFaces::Hidden> hidden,
                     const std::function<void(std::span<const Eigen::Vector3d>)>& use) {
-  constexpr std::size_t kMany = 64;
+  constexpr std::size_t kMany = 24;
   if (hidden.empty()) return use(piece);
   if (hidden.size() > kMany && use_halves(piece, hidden, use)) return;
   std::vector<Points> parts{{piece.begin(), piece.end()}}, next;
   for (const SeenFaces::Hidden& one : hidden) {
     next.clear();
-    for (const Points& part : parts) cut(part, one, next);
+    for (Points& part : parts) cut(std::move(part), one, next);
     std::swap(parts, next);
   }
   for (const Points& part : parts) use(part);

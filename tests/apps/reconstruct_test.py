@@ -117,7 +117,7 @@ class Reconstruct(unittest.TestCase):
                 (["--tiles", "2", "--map=--hillshade"],
                  "--map --hillshade: MapSurface does not run with --until texture"),
                 (["--without", "mesh"], "--without mesh: mesh is not one of refine-mesh, texture, map, "
-                 "page"),
+                 "page, report"),
                 (["--without", "map", "--map=--hillshade"],
                  "--map --hillshade: contradicts --without map"),
                 (["--compare=--align none"], "--compare --align none: is only for --earlier"),
