@@ -6,6 +6,7 @@
 #include <random>
 
 #include "geometry/vertex_bends.h"
+#include "support/grid_mesh.h"
 
 namespace axial::geometry {
 namespace {
@@ -13,18 +14,9 @@ namespace {
 // A grid of vertices at random heights.
 Mesh rough_grid(int steps) {
   std::mt19937 random(5);
-  std::normal_distribution<float> height(0, 0.1f);
-  Mesh mesh;
-  for (int j = 0; j <= steps; ++j)
-    for (int i = 0; i <= steps; ++i)
-      mesh.vertices.emplace_back(static_cast<float>(i), static_cast<float>(j), height(random));
-  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(j * (steps + 1) + i); };
-  for (int j = 0; j < steps; ++j)
-    for (int i = 0; i < steps; ++i) {
-      mesh.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      mesh.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-  return mesh;
+  std::normal_distribution<double> height(0, 0.1);
+  return test::grid_mesh(steps,
+                         [&](int i, int j) { return Eigen::Vector3d(i, j, height(random)); });
 }
 
 // Vertices of its own for each face, after those of the mesh.

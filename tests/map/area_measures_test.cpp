@@ -7,6 +7,8 @@
 #include <functional>
 #include <numbers>
 
+#include "support/grid_mesh.h"
+
 namespace axial::map {
 namespace {
 
@@ -14,19 +16,10 @@ constexpr double kPi = std::numbers::pi;
 
 // The graph of a function on the square [-1, 1]^2, in squares of two triangles.
 Mesh graph(int steps, const std::function<double(double, double)>& height) {
-  Mesh mesh;
-  for (int j = 0; j <= steps; ++j)
-    for (int i = 0; i <= steps; ++i) {
-      const double x = -1 + 2.0 * i / steps, y = -1 + 2.0 * j / steps;
-      mesh.vertices.emplace_back(Eigen::Vector3d(x, y, height(x, y)).cast<float>());
-    }
-  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(j * (steps + 1) + i); };
-  for (int j = 0; j < steps; ++j)
-    for (int i = 0; i < steps; ++i) {
-      mesh.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      mesh.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-  return mesh;
+  return test::grid_mesh(steps, [&](int i, int j) {
+    const double x = -1 + 2.0 * i / steps, y = -1 + 2.0 * j / steps;
+    return Eigen::Vector3d(x, y, height(x, y));
+  });
 }
 
 Area disc(const Eigen::Vector2d& centre, double radius, int corners = 720) {

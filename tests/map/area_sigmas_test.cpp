@@ -10,6 +10,7 @@
 
 #include "geometry/vertex_bends.h"
 #include "map/area_table.h"
+#include "support/grid_mesh.h"
 
 namespace axial::map {
 namespace {
@@ -21,21 +22,11 @@ Mesh noisy_graph(int steps, double noise, unsigned seed,
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> shift(-0.25, 0.25);
-  Mesh mesh;
-  for (int j = 0; j <= steps; ++j)
-    for (int i = 0; i <= steps; ++i) {
-      const double x = -1 + 2.0 * (i + shift(random)) / steps,
-                   y = -1 + 2.0 * (j + shift(random)) / steps;
-      mesh.vertices.emplace_back(
-          Eigen::Vector3d(x, y, height(x, y) + noise * normal(random)).cast<float>());
-    }
-  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(j * (steps + 1) + i); };
-  for (int j = 0; j < steps; ++j)
-    for (int i = 0; i < steps; ++i) {
-      mesh.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      mesh.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-  return mesh;
+  return test::grid_mesh(steps, [&](int i, int j) {
+    const double x = -1 + 2.0 * (i + shift(random)) / steps,
+                 y = -1 + 2.0 * (j + shift(random)) / steps;
+    return Eigen::Vector3d(x, y, height(x, y) + noise * normal(random));
+  });
 }
 
 Area circle(double radius) {
