@@ -184,7 +184,8 @@ std::vector<SeenFaces::Hidden> hidden_of(std::span<const Eigen::Vector3d> piece,
 }
 
 // Below many small faces, the time grows with the square of their number, so a large piece is cut
-// into halves first. Returns false if this does not help.
+// into halves first. Returns false if this does not help. The larger half of a triangle has three
+// quarters of its area.
 bool use_halves(std::span<const Eigen::Vector3d> piece, std::span<const SeenFaces::Hidden> hidden,
                 const std::function<void(std::span<const Eigen::Vector3d>)>& use) {
   std::array<Points, 2> parts;
@@ -193,7 +194,7 @@ bool use_halves(std::span<const Eigen::Vector3d> piece, std::span<const SeenFace
   for (std::size_t k = 0; k < 2; ++k) {
     geometry::convex_part(piece, halves[k], parts[k]);
     of_parts[k] = hidden_of(parts[k], hidden);
-    if (4 * of_parts[k].size() > 3 * hidden.size()) return false;
+    if (10 * of_parts[k].size() > 9 * hidden.size()) return false;
   }
   for (std::size_t k = 0; k < 2; ++k)
     if (parts[k].size() > 2) for_seen_parts(parts[k], of_parts[k], use);

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The page of the demo's results: HTML in one file, with all pictures in it."""
 
-import base64
 import html
 import json
 import math
@@ -9,6 +8,7 @@ import string
 
 from . import demo_table
 from .demo_runs import CHANGE
+from .report_html import figure
 
 
 def html_table(table, rows):
@@ -93,17 +93,10 @@ def histogram_svg(rows):
             f'{"".join(parts)}</svg><p class="legend">{legend}</p>')
 
 
-def image(path, caption):
-    data = base64.b64encode(path.read_bytes()).decode()
-    kind = "jpeg" if path.suffix == ".jpg" else "png"
-    return (f'<figure><img src="data:image/{kind};base64,{data}" alt="{html.escape(caption)}">'
-            f"<figcaption>{html.escape(caption)}</figcaption></figure>")
-
-
 def cloud_pictures(rows):
     return "".join(f'<section class="card"><h3><i style="background:{row["color"]}"></i>'
                    f'{html.escape(row["title"])}</h3><p>{html.escape(row["meaning"])}</p>' +
-                   image(row["folder"] / "evaluation.png",
+                   figure(row["folder"] / "evaluation.png",
                          "Points seen from the first camera, coloured by error") + "</section>"
                    for row in rows)
 
@@ -113,7 +106,7 @@ def depth_pictures(rows):
     for row in rows:
         for path in sorted(row["folder"].glob("depth-*.png")):
             view = path.stem.removeprefix("depth-")
-            figures.append(image(path, f'{row["title"]}, view {view}: estimate, truth, error'))
+            figures.append(figure(path, f'{row["title"]}, view {view}: estimate, truth, error'))
     return "".join(figures)
 
 
@@ -122,11 +115,11 @@ def mesh_pictures(meshes, photograph):
     cards = "".join(
         f'<section class="card"><h3><i style="background:{row["color"]}"></i>'
         f'{html.escape(row["title"])}</h3>' +
-        image(row["folder"] / "rendered" / f"{name}.jpg", f"Textured, view {name}") +
-        image(row["folder"] / "rendered" / f"{name}.errors.jpg", "Coloured by error") + "</section>"
+        figure(row["folder"] / "rendered" / f"{name}.jpg", f"Textured, view {name}") +
+        figure(row["folder"] / "rendered" / f"{name}.errors.jpg", "Coloured by error") + "</section>"
         for row in meshes)
     return (f'<section class="card"><h3>The photograph under water</h3>' +
-            image(photograph, f"View {name}, left out of texturing") + "</section>" + cards)
+            figure(photograph, f"View {name}, left out of texturing") + "</section>" + cards)
 
 
 def falsely_changed(results):

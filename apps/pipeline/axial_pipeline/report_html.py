@@ -95,13 +95,18 @@ def table(rows, heads=(), caption=""):
     return f"<table>{title}{top}<tbody>\n{''.join(map(row, rows))}</tbody></table>\n"
 
 
+def figure(path, caption):
+    """A figure that holds the JPEG or PNG `path`."""
+    data = base64.b64encode(path.read_bytes()).decode()
+    kind = "jpeg" if path.suffix == ".jpg" else "png"
+    return (f'<figure><img src="data:image/{kind};base64,{data}" alt="{html.escape(caption)}">'
+            f"<figcaption>{html.escape(caption)}</figcaption></figure>\n")
+
+
 def picture(path, caption):
     """A figure that holds the JPEG `path`. A line names a file that is too large. Nothing without a file."""
     if not path.is_file():
         return ""
-    content = path.read_bytes()
-    if len(content) > MOST_BYTES:
+    if path.stat().st_size > MOST_BYTES:
         return paragraph(f"{caption}: see {path.name}, which is too large for this report.")
-    data = base64.b64encode(content).decode()
-    return (f'<figure><img src="data:image/jpeg;base64,{data}" alt="{html.escape(caption)}">'
-            f"<figcaption>{html.escape(caption)}</figcaption></figure>\n")
+    return figure(path, caption)
