@@ -101,17 +101,6 @@ std::vector<Eigen::Vector2d> places_on_rim(std::span<const geometry::Ring> rings
   return places;
 }
 
-// Whether a piece is a line on the map, as what is left beside a face that hides another one.
-bool is_thin(Corners piece) {
-  constexpr double kWidth = 1e-7;  // [m]
-  double twice = 0, length = 0;
-  for (std::size_t k = 2; k < piece.size(); ++k)
-    twice += std::abs((piece[k - 1] - piece[0]).cross(piece[k] - piece[0]).z());
-  for (const Eigen::Vector3d& corner : piece)
-    length = std::max(length, (corner - piece[0]).head<2>().norm());
-  return twice <= kWidth * length;
-}
-
 }  // namespace
 
 // What the pieces of the faces above a part add up to.
@@ -133,7 +122,7 @@ struct AreaSums {
     // noise of what a further noise t adds is in proportion to sqrt(s^2 + t^2) - s. It is what the
     // noise s adds to the true surface if t = sqrt(3) s.
     static const double kNoisyHeight = std::sqrt(3);
-    if (!is_thin(piece))
+    if (!is_line_on_map(piece))
       for (const Eigen::Vector3d& corner : piece) {
         lowest = std::min(lowest, corner.z());
         highest = std::max(highest, corner.z());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts of faces that are seen from above: exactly, but for 1e-9 m at the edges and 1e-7 m of
+// The parts of faces that are seen from above: exactly, but for 1e-7 m at the edges and 1e-7 m of
 // height.
 #pragma once
 
@@ -53,8 +53,12 @@ class SeenFaces {
   FaceBins bins_;
 };
 
+// Whether a convex polygon in a plane is narrower than 1e-7 m on the map. A vertical polygon is.
+bool is_line_on_map(std::span<const Eigen::Vector3d> piece);
+
 // Calls `use` for the parts of a convex polygon in a plane that are not `hidden`, which are convex
-// and keep its direction.
+// and keep its direction. Parts that are lines on the map are left out, except those of a polygon
+// that is a line itself.
 void for_seen_parts(std::span<const Eigen::Vector3d> piece,
                     std::span<const SeenFaces::Hidden> hidden,
                     const std::function<void(std::span<const Eigen::Vector3d>)>& use);

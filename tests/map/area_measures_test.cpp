@@ -234,5 +234,22 @@ TEST(AreaMeasures, OfAClosedBodyAloneAreThoseOfItsUpperSide) {
   EXPECT_NEAR(found.lowest, 1, 1e-6);
 }
 
+// Two large faces close a body below 20,000 small ones. This does not end if lines between small
+// faces count as parts of a large face.
+TEST(AreaMeasures, LargeFacesBelowSmallOnesAreHidden) {
+  const auto relief = [](double x, double y) { return 0.1 * std::sin(5 * x) * std::cos(4 * y); };
+  Mesh mesh = graph(100, relief);
+  const Mesh lower = graph(1, [](double, double) { return -2.0; });
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const auto& [a, b, c] : lower.faces) mesh.faces.push_back({a + first, c + first, b + first});
+  mesh.vertices.insert(mesh.vertices.end(), lower.vertices.begin(), lower.vertices.end());
+  const AreaMeasures closed = AreaMeter(mesh, Eigen::Vector3d::Zero()).measure(kWide);
+  const AreaMeasures open = AreaMeter(graph(100, relief), Eigen::Vector3d::Zero()).measure(kWide);
+  EXPECT_NEAR(closed.seen, open.seen, 1e-5);  // lines of 1e-7 m beside 100 rows of faces
+  EXPECT_NEAR(closed.planar, open.planar, 1e-5);
+  EXPECT_EQ(closed.lowest, open.lowest);
+  EXPECT_NEAR(closed.surface, open.surface + 1.8 * 1.8, 1e-5);
+}
+
 }  // namespace
 }  // namespace axial::map
