@@ -25,9 +25,19 @@ constexpr double kLongSteps = 1e9;
 // part would be the noise of the projections, which are iterations themselves.
 constexpr double kLeastRelativeGain = 1e-8;
 
+// The damping is bounded from below, so that the equations can be solved where nothing determines
+// the scale.
+constexpr double kLongestSteps = 1e10;
+
+// A point whose observations are all outliers moves by short steps of equal lengths. Such steps may
+// take all iterations, but they hardly change the cost. A step of 0.14 standard deviations gains
+// this part of half the cost.
+constexpr double kGainOfOutliers = 0.01;
+
 // Reports the iterations. Ends the adjustment when an iteration with little damping gains less than
-// `least_gain`, or less than kLeastRelativeGain of the cost. The gain of a strongly damped step
-// tells nothing about the distance to the minimum.
+// `least_gain`, or less than kLeastRelativeGain of the cost, or with the least damping less than
+// kGainOfOutliers. The gain of a strongly damped step tells nothing about the distance to the
+// minimum.
 class Iterations : public ceres::IterationCallback {
  public:
   Iterations(const AdjustSink& sink, const Context& context, double least_gain)
@@ -47,7 +57,9 @@ class Iterations : public ceres::IterationCallback {
     if (!iteration.step_is_successful)
       return iteration.step_is_valid &&
              std::abs(iteration.cost_change) < kLeastRelativeGain * iteration.cost;
-    return iteration.cost_change < least && iteration.trust_region_radius > kLongSteps / 1000;
+    const double radius = iteration.trust_region_radius;
+    return (iteration.cost_change < least && radius > kLongSteps / 1000) ||
+           (iteration.cost_change < kGainOfOutliers && radius >= kLongestSteps);
   }
 
   const AdjustSink& sink_;
@@ -72,19 +84,14 @@ ceres::Solver::Options solver_options(AdjustProblem& adjusted, int max_iteration
   options.function_tolerance = 1e-10;
   options.gradient_tolerance = 0;
   options.parameter_tolerance = 1e-12;
-  // Bounds the damping from below, so that the equations can be solved where nothing determines the
-  // scale.
-  options.max_trust_region_radius = 1e10;
+  options.max_trust_region_radius = kLongestSteps;
   options.logging_type = ceres::SILENT;
   return options;
 }
 
-// A point whose observations are all outliers moves by short steps of equal lengths. Such steps may
-// take all iterations, but they hardly change the cost.
 bool has_converged(const ceres::Solver::Summary& summary) {
-  constexpr double kLeastGain = 0.01;  // a step of 0.14 standard deviations
   return summary.termination_type != ceres::NO_CONVERGENCE ||
-         summary.iterations.back().cost_change < kLeastGain;
+         summary.iterations.back().cost_change < kGainOfOutliers;
 }
 
 }  // namespace
