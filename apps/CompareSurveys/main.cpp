@@ -21,6 +21,7 @@
 #include "io/openmvs/scene_files.h"
 #include "io/ply/ply.h"
 #include "io/textured/textured_mesh.h"
+#include "map/map_place.h"
 #include "map/up_direction.h"
 #include "scene/check_mesh.h"
 #include "scene/marked_faces.h"
@@ -163,6 +164,13 @@ NearSide near_side(const fs::path& path, const std::vector<geometry::PosedCamera
   });
 }
 
+// Both surveys in the frame of the earlier one.
+struct Surveys {
+  LocalFrame frame;
+  Mesh before, after;
+  NearSide near_before, near_after;
+};
+
 // Error if the map would show the far side of a survey: what came would count as gone.
 void check_up(const Settings& settings, const LocalFrame& frame, const Eigen::Vector3d& up,
               const NearSide& side) {
@@ -189,16 +197,21 @@ void check_up(const Settings& settings, const LocalFrame& frame, const Eigen::Ve
           settings.before.string(), remedy);
 }
 
-map::MapFrame place_map(const Settings& settings, const Mesh& mesh, const LocalFrame& frame,
-                        const NearSide& before, const NearSide& after) {
+// `wanted`: the axes that the user wants, or nothing.
+map::MapFrame place_map(const Settings& settings, const std::optional<map::WorldAxes>& wanted,
+                        const Surveys& surveys) {
+  const LocalFrame& frame = surveys.frame;
   const Eigen::Vector3d up =
-      settings.up ? *settings.up
+      wanted        ? Eigen::Vector3d(wanted->axes.row(2).transpose())
+      : settings.up ? *settings.up
       : has_system(settings, frame)
           ? Eigen::Vector3d::UnitZ()
-          : naming(settings.before, [&] { return compare::upward_direction(mesh, before.facing); });
-  check_up(settings, frame, up, before);
-  check_up(settings, frame, up, after);
-  return map::frame_with_up(up, frame);
+          : naming(settings.before, [&] {
+              return compare::upward_direction(surveys.before, surveys.near_before.facing);
+            });
+  check_up(settings, frame, up, surveys.near_before);
+  check_up(settings, frame, up, surveys.near_after);
+  return wanted ? map::frame_on(*wanted, frame) : map::frame_with_up(up, frame);
 }
 
 // `with`: what the registration used.
@@ -274,13 +287,6 @@ void report(const compare::Comparison& comparison) {
   warn_of_large_changes(comparison);
 }
 
-// Both surveys in the frame of the earlier one.
-struct Surveys {
-  LocalFrame frame;
-  Mesh before, after;
-  NearSide near_before, near_after;
-};
-
 // Reads the surveys and the photographs of `settings`. `by_targets`: how the later survey is moved;
 // empty: not here.
 Surveys read_surveys(Settings& settings, const std::optional<ByTargets>& by_targets,
@@ -326,7 +332,7 @@ int run(int argc, char** argv) {
   compare::ChangeFacts facts{settings.before.filename().string(),
                              settings.after.filename().string()};
   if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg);
-  boundary::take_map(settings.boundary, settings.up, facts.crs);
+  const std::optional<map::WorldAxes> wanted = boundary::take_map(settings.boundary, facts.crs);
   const OutputLock lock = lock_output(change_files(settings).difference);
   const std::optional<ByTargets> by_targets = register_by_targets(settings);
   boundary::check_files(boundary_of(settings), settings.before, facts.crs);
@@ -334,10 +340,10 @@ int run(int argc, char** argv) {
   const Surveys surveys = read_surveys(settings, by_targets, context);
   facts.mesh_frame = surveys.frame;
   facts.aligned = settings.compare.align || by_targets;
-  const map::MapFrame map_frame =
-      place_map(settings, surveys.before, surveys.frame, surveys.near_before, surveys.near_after);
+  const map::MapFrame map_frame = place_map(settings, wanted, surveys);
   const bool is_known = has_system(settings, surveys.frame) || !facts.crs.empty();
-  facts.is_georeferenced = is_known && map_frame.axes.isIdentity(0);
+  facts.is_georeferenced =
+      is_known && (map_frame.axes.isIdentity(0) || (wanted && !facts.crs.empty()));
   if (by_targets) {
     facts.by_targets = by_targets->found;
     facts.labels = by_targets->labels;

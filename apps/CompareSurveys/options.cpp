@@ -49,6 +49,7 @@ void declare_map(OptionList& list, Raw& raw, Settings& settings) {
                         "one in metres (0: none)")
       .range(0, 1 << 20);
   boundary::declare(list, settings.boundary);
+  boundary::declare_like(list, settings.boundary);
 }
 
 void declare_comparison(OptionList& list, Raw& raw, Settings& settings) {
@@ -85,7 +86,8 @@ void declare_comparison(OptionList& list, Raw& raw, Settings& settings) {
 }
 
 void check(const ParsedOptions& parsed, const Raw& raw, const Settings& settings) {
-  boundary::check(parsed, settings.boundary, {"up", "epsg"});
+  boundary::check(parsed, settings.boundary);
+  boundary::check_like(parsed);
   if (given(parsed, "min-views") && settings.scene_before.empty() && settings.scene_after.empty())
     fail("--min-views needs --scene or --other-scene");
   const bool by_targets = settings.align == Align::targets || settings.align == Align::automatic;

@@ -25,6 +25,7 @@
 #include "io/textured/textured_mesh.h"
 #include "map/height_error.h"
 #include "map/local_coordinates.h"
+#include "map/map_place.h"
 #include "map/pixel_width.h"
 #include "map/profiles.h"
 #include "map/up_direction.h"
@@ -142,24 +143,34 @@ double pixel_of(const Settings& settings, const Mesh& mesh, const survey::Survey
   return map::rounded_width(map::median_pixel_width(mesh, survey::posed_cameras(survey)));
 }
 
-// Heights are along z if the coordinates of the scene are those of a reference system: if the scene
-// has an offset, or if the user names the system.
+// Where the user wants the map.
+struct WantedPlace {
+  std::optional<map::WorldAxes> axes;
+  std::string crs;  // WKT; empty: none
+};
+
+// Without wanted axes, heights are along z if the coordinates of the scene are those of a reference
+// system: if the scene has an offset, or if the user names the system.
 PlacedMap place_map(const Settings& settings, const Mesh& mesh, const survey::Survey& survey,
-                    const std::string& crs, const Eigen::Vector3d& facing, const Context& context) {
+                    const WantedPlace& wanted, const Eigen::Vector3d& facing,
+                    const Context& context) {
   const LocalFrame& frame = survey.frame;
-  const bool has_system = !frame.is_world() || !crs.empty();
-  const Eigen::Vector3d up = settings.up  ? *settings.up
-                             : has_system ? Eigen::Vector3d::UnitZ()
-                                          : map::fitted_up(mesh, centres_of(survey));
+  const bool has_system = !frame.is_world() || !wanted.crs.empty();
+  const Eigen::Vector3d up = wanted.axes   ? Eigen::Vector3d(wanted.axes->axes.row(2).transpose())
+                             : settings.up ? *settings.up
+                             : has_system  ? Eigen::Vector3d::UnitZ()
+                                           : map::fitted_up(mesh, centres_of(survey));
   check_up(settings, up, facing);
   PlacedMap map;
   map.mesh_frame = frame;
-  map.frame = map::frame_with_up(up, frame);
-  map.is_georeferenced = has_system && map.frame.axes.isIdentity(0);
+  map.frame = wanted.axes ? map::frame_on(*wanted.axes, frame) : map::frame_with_up(up, frame);
+  // A registered survey is turned a little against a map with a reference system.
+  map.is_georeferenced =
+      has_system && (map.frame.axes.isIdentity(0) || (wanted.axes && !wanted.crs.empty()));
   map.grid.pixel = pixel_of(settings, mesh, survey, context);
   if (settings.boundary.is_given())
     map.boundary = boundary::read_boundary(settings.boundary, map::world_axes(map.frame, frame),
-                                           crs, frame, settings.mesh);
+                                           wanted.crs, frame, settings.mesh);
   const auto& axes = map.frame.axes;
   log_info("map's x: {:.4f} {:.4f} {:.4f}, y: {:.4f} {:.4f} {:.4f}, up: {:.4f} {:.4f} {:.4f}",
            axes(0, 0), axes(0, 1), axes(0, 2), axes(1, 0), axes(1, 1), axes(1, 2), axes(2, 0),
@@ -304,8 +315,9 @@ int run(int argc, char** argv) {
   share_one_heap();
   Settings settings = options.settings;
   const Context context = program_context(options.parsed);
-  std::string crs = settings.epsg > 0 ? map::crs_of_epsg(settings.epsg) : "";
-  boundary::take_map(settings.boundary, settings.up, crs);
+  WantedPlace wanted{{}, settings.epsg > 0 ? map::crs_of_epsg(settings.epsg) : ""};
+  const std::string& crs = wanted.crs;
+  wanted.axes = boundary::take_map(settings.boundary, wanted.crs);
   const OutputLock lock = lock_output(first_file(settings));
   survey::Survey survey = survey::open_scene(settings.survey, context);
   boundary::check_files(settings.boundary, settings.mesh, crs);
@@ -325,7 +337,7 @@ int run(int argc, char** argv) {
   const survey::Photographs photographs(survey);
   naming(settings.mesh, [&] {
     const Eigen::Vector3d facing = keep_seen_part(settings, survey, mesh, context);
-    PlacedMap place = place_map(settings, mesh.mesh, survey, crs, facing, context);
+    PlacedMap place = place_map(settings, mesh.mesh, survey, wanted, facing, context);
     if (place.boundary) mark_outside(place, mesh, context);
     place_pixels(mesh.mesh, survey, place);
     const map::MapFiles files = map_files(settings, survey, place.grid, crs);

@@ -93,6 +93,7 @@ void declare_map(OptionList& list, Raw& raw, Settings& settings) {
       .range(0, 1e6)
       .sets("contour_interval");
   boundary::declare(list, settings.boundary);
+  boundary::declare_like(list, settings.boundary);
 }
 
 void declare_photographs(OptionList& list, Settings& settings) {
@@ -111,7 +112,8 @@ void convert(const Raw& raw, Options& options) {
   settings.output =
       output_or(settings.output, without_known_extension(scene) += "_map", "--output-file");
   settings.up = map::parse_up(raw.up, settings.epsg);
-  boundary::check(options.parsed, settings.boundary, {"up", "epsg"});
+  boundary::check(options.parsed, settings.boundary);
+  boundary::check_like(options.parsed);
   survey::take_masks(options.parsed, settings.survey);
   settings.survey.compares_photographs = true;
 }

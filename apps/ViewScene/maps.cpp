@@ -12,6 +12,7 @@
 #include "change_report.h"
 #include "folder.h"
 #include "io/images/image.h"
+#include "map/map_place.h"
 #include "map/reduced_map.h"
 #include "map/stated_kind.h"
 #include "scene/resolution.h"
@@ -48,6 +49,9 @@ class Layers {
  public:
   Layers(const MapOptions& options, fs::path staging)
       : options_(options), staging_(std::move(staging)) {}
+
+  // The worlds of the files that are read next: `motion` moves the world of the page there.
+  void use_motion(const Eigen::Isometry3d& motion) { motion_ = motion; }
 
   // Reads the map PREFIX.`end`. Error if it does not state the kind `stated`, if it does not lie on
   // the same plane as those before, or, with the same prefix, if it has another grid.
@@ -95,16 +99,23 @@ class Layers {
  private:
   void check_axes(const ReducedMap& map, const fs::path& file) {
     if (!map.axes) return;
+    const map::WorldAxes axes = map::after(motion_, *map.axes);
     if (!axes_) {
-      axes_ = map.axes;
+      axes_ = axes;
       of_axes_ = file;
     }
+    // The later survey may have been mapped where it was before it was aligned.
+    if (!is_same_plane(axes) && !is_same_plane(*map.axes))
+      fail_in(file,
+              "has other axes than {}; give MapSurface and CompareSurveys the same --up, or --like",
+              of_axes_.string());
+  }
+
+  bool is_same_plane(const map::WorldAxes& axes) const {
     constexpr double kTolerance = 1e-6;
     // Their heights need not have the same origin: only horizontal places must agree.
-    const Eigen::Vector3d shift = map.axes->offset - axes_->offset;
-    if (!map.axes->axes.isApprox(axes_->axes, kTolerance) || shift.head<2>().norm() > kTolerance)
-      fail_in(file, "has other axes than {}; give MapSurface and CompareSurveys the same --up",
-              of_axes_.string());
+    const Eigen::Vector3d shift = axes.offset - axes_->offset;
+    return axes.axes.isApprox(axes_->axes, kTolerance) && shift.head<2>().norm() <= kTolerance;
   }
 
   const MapOptions& options_;
@@ -112,6 +123,7 @@ class Layers {
   std::string prefix_;  // of the map before
   map::MapGrid grid_;   // of the maps with this prefix
   fs::path first_, of_axes_;
+  Eigen::Isometry3d motion_ = Eigen::Isometry3d::Identity();
   std::optional<map::WorldAxes> axes_;
   Json layers_ = Json::array();
 };
@@ -155,6 +167,12 @@ Json add_maps(Layers& layers, const MapOptions& options, const fs::path& staging
   return write_heights(dem, staging);
 }
 
+void add_orthomosaic(Layers& layers, const fs::path& prefix, const char* id, const char* title) {
+  if (prefix.empty()) return;
+  const ReducedMap map = layers.read(prefix, ".ortho.tif", MapKind::colors, kinds::kColors);
+  layers.add(id, title, map, view::opaque(map.pixels));
+}
+
 // The picture of the classes of CompareSurveys.
 cv::Mat3b painted_classes(const cv::Mat1f& classes) {
   static const cv::Vec3b kColors[] = {{110, 116, 124}, {230, 120, 50}, {66, 130, 190}};  // R G B
@@ -196,12 +214,17 @@ Json add_changes(Layers& layers, const MapOptions& options) {
 }  // namespace
 
 Json write_maps(const MapOptions& options, const fs::path& staging) {
-  if (options.maps.empty() && options.changes.empty()) return {};
+  if (options.is_empty()) return {};
   make_folder(staging / "maps");
   Layers layers(options, staging);
   Json heights, change;
   if (!options.maps.empty()) heights = add_maps(layers, options, staging);
-  if (!options.changes.empty()) change = add_changes(layers, options);
+  add_orthomosaic(layers, options.raw, "raw-ortho", "Orthomosaic with water");
+  if (!options.changes.empty()) {
+    layers.use_motion(map::motion_of_comparison(options.changes.string() + ".change.json"));
+    change = add_changes(layers, options);
+  }
+  add_orthomosaic(layers, options.earlier, "earlier-ortho", "Orthomosaic of the earlier survey");
   Json data = layers.data();
   data["heights"] = heights;
   data["change"] = change;

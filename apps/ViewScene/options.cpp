@@ -23,6 +23,12 @@ struct Raw {
 
 void declare_survey(OptionList& list, Options& options) {
   list.add("map", &options.maps.maps, "maps to show: the begin of their names, -o of MapSurface")
+      .add("raw-map", &options.maps.raw,
+           "a map with the colours of the photographs, if those of --map have no water: the page "
+           "shows its orthomosaic")
+      .add("earlier-map", &options.maps.earlier,
+           "a map of an earlier survey with the same axes, or with those of --change: the page "
+           "shows its orthomosaic")
       .add("change", &options.maps.changes,
            "changes to show: the begin of the names of their files, -o of CompareSurveys")
       .add_with_default("map-size", &options.maps.longest_side,

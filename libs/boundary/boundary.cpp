@@ -97,11 +97,11 @@ void check_files(const Options& options, const fs::path& mesh, const std::string
   if (!options.targets.empty()) places_of_targets(file_of_places(options, mesh), options.targets);
 }
 
-void take_map(const Options& options, std::optional<Eigen::Vector3d>& up, std::string& crs) {
-  if (options.map.empty()) return;
+std::optional<map::WorldAxes> take_map(const Options& options, std::string& crs) {
+  if (options.map.empty()) return {};
   const map::MapPlace place = map::place_of_map(options.map);
-  up = place.axes.axes.row(2).transpose();
   crs = place.crs;
+  return place.axes;
 }
 
 }  // namespace axial::boundary

@@ -65,9 +65,8 @@ Boundary read_boundary(const Options& options, const map::WorldAxes& axes, const
 void check_files(const Options& options, const std::filesystem::path& mesh,
                  const std::string& crs = {});
 
-// For programs that make a map: takes the direction of the heights [world] and the coordinate
-// reference system (WKT) of Options::map, if it is given. Errors of map::place_of_map() are passed
-// on.
-void take_map(const Options& options, std::optional<Eigen::Vector3d>& up, std::string& crs);
+// For programs that make a map: the axes of Options::map, and its coordinate reference system (WKT)
+// in place of `crs`. Nothing if it is not given. Errors of map::place_of_map() are passed on.
+std::optional<map::WorldAxes> take_map(const Options& options, std::string& crs);
 
 }  // namespace axial::boundary

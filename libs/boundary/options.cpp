@@ -38,17 +38,29 @@ void declare(OptionList& list, Options& options) {
            "the boundary is meant");
 }
 
-void check(const ParsedOptions& parsed, const Options& options,
-           std::initializer_list<const char*> of_map) {
+void declare_like(OptionList& list, Options& options) {
+  list.add("like", &options.map,
+           "map of MapSurface whose axes and coordinate reference system the new map gets; or "
+           ".change.json of CompareSurveys: the map of the later survey gets those of the earlier "
+           "one");
+}
+
+void check(const ParsedOptions& parsed, const Options& options) {
   if (!options.file.empty() && !options.targets.empty())
     fail("--boundary-targets contradicts --boundary: give one of them");
   if (!options.places.empty() && options.targets.empty())
     fail("--target-places {}: is only for --boundary-targets", options.places.string());
-  if (options.map.empty()) return;
-  if (!options.is_given())
+  if (given(parsed, "boundary-map") && !options.is_given())
     fail("--boundary-map {}: is only for --boundary and --boundary-targets", options.map.string());
-  for (const char* option : of_map)
-    if (given(parsed, option)) fail("--{} contradicts --boundary-map, which states it", option);
+}
+
+void check_like(const ParsedOptions& parsed) {
+  const bool is_like = given(parsed, "like"), is_of_boundary = given(parsed, "boundary-map");
+  if (is_like && is_of_boundary) fail("--boundary-map contradicts --like: give one of them");
+  if (!is_like && !is_of_boundary) return;
+  for (const char* option : {"up", "epsg"})
+    if (given(parsed, option))
+      fail("--{} contradicts --{}, which states it", option, is_like ? "like" : "boundary-map");
 }
 
 }  // namespace axial::boundary

@@ -15,7 +15,8 @@ struct Options {
   std::filesystem::path file;        // polygons (map/areas.h); empty: none
   std::vector<std::string> targets;  // labels of the corners, in order; in place of `file`
   std::filesystem::path places;      // of the targets; empty: those beside the mesh
-  std::filesystem::path map;  // the map whose axes and reference system the polygons have, or empty
+  // The map, or the comparison, whose axes and reference system the polygons have; empty: none.
+  std::filesystem::path map;
 
   bool is_given() const { return !file.empty() || !targets.empty(); }
   // The files that are named.
@@ -26,9 +27,14 @@ struct Options {
 // `list`. `options` must exist until parse_options() has returned. The program then calls check().
 void declare(OptionList& list, Options& options);
 
-// Error for options that contradict each other or that need another one. `of_map`: the names of the
-// program's options that `--boundary-map` replaces.
-void check(const ParsedOptions& parsed, const Options& options,
-           std::initializer_list<const char*> of_map = {});
+// For programs that make a map: adds `--like` besides, another name of `--boundary-map`, which here
+// needs no boundary. The program then calls check_like(), too.
+void declare_like(OptionList& list, Options& options);
+
+// Error for options that contradict each other or that need another one.
+void check(const ParsedOptions& parsed, const Options& options);
+
+// Error if `--up` or `--epsg` contradict Options::map.
+void check_like(const ParsedOptions& parsed);
 
 }  // namespace axial::boundary

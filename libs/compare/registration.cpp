@@ -275,11 +275,13 @@ map::MapFrame moved(const map::MapFrame& frame, const RigidMotion& motion) {
           motion.rotation * (frame.origin - motion.centre) + motion.centre + motion.translation};
 }
 
-Similarity in_world(const RigidMotion& motion, const Eigen::Matrix3d& axes) {
+Similarity in_world(const RigidMotion& motion, const map::WorldAxes& map) {
   Similarity result;
-  result.rotation = axes.transpose() * motion.rotation * axes;
+  result.rotation = map.axes.transpose() * motion.rotation * map.axes;
+  // From the origin of the world, whose place on the map is the offset.
+  const Eigen::Vector3d origin = map.offset - motion.centre;
   result.translation =
-      axes.transpose() * (motion.centre - motion.rotation * motion.centre + motion.translation);
+      map.axes.transpose() * (motion.rotation * origin - origin + motion.translation);
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include "axial/compare.h"
 #include "base/progress.h"
 #include "map/frame.h"
+#include "map/world_axes.h"
 #include "scene/decompositions.h"
 #include "scene/mesh.h"
 
@@ -15,8 +16,8 @@ namespace axial::compare {
 // The frame that gives a point of the mesh the map coordinates motion(frame.to_map(point)).
 map::MapFrame moved(const map::MapFrame& frame, const RigidMotion& motion);
 
-// The motion in world coordinates, for a map with the axes `axes` (MapFrame::axes).
-Similarity in_world(const RigidMotion& motion, const Eigen::Matrix3d& axes);
+// The motion in world coordinates, for a motion on the map `map`.
+Similarity in_world(const RigidMotion& motion, const map::WorldAxes& map);
 
 // The row of derivatives of the height at a fixed place of the map by a motion of the surface
 // (rotation vector, translation). `offset`: the place minus the centre of the motion.

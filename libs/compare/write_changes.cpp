@@ -36,13 +36,28 @@ Json json_of(const Volume& volume, std::size_t regions) {
           {"regions", regions}};
 }
 
-Json rows_of(const Eigen::Matrix4d& matrix) {
+Json rows_of(const Eigen::MatrixXd& matrix) {
   Json rows = Json::array();
-  for (int k = 0; k < 4; ++k) rows.push_back(list_of(matrix.row(k).transpose()));
+  for (Eigen::Index k = 0; k < matrix.rows(); ++k)
+    rows.push_back(list_of(matrix.row(k).transpose()));
   return rows;
 }
 
-Json json_of(const Registration& registration, const Eigen::Matrix3d& axes, double sigma) {
+// Of the map, for place_of_map() (map/map_place.h).
+Json json_of(const map::MapGrid& grid, const map::WorldAxes& axes, const std::string& crs) {
+  const Json rows = rows_of(axes.axes);
+  return {{"pixel", grid.pixel},
+          {"columns", grid.columns},
+          {"rows", grid.rows},
+          {"left", grid.left},
+          {"top", grid.top},
+          {"up", rows[2]},
+          {"axes", rows},
+          {"offset", list_of(axes.offset)},
+          {"crs", crs.empty() ? Json() : Json(crs)}};
+}
+
+Json json_of(const Registration& registration, const map::WorldAxes& map, double sigma) {
   const RigidMotion& motion = registration.motion;
   const Eigen::AngleAxisd turn(motion.rotation);
   const Vector6d sigmas = registration.covariance.diagonal().cwiseMax(0).cwiseSqrt();
@@ -57,7 +72,7 @@ Json json_of(const Registration& registration, const Eigen::Matrix3d& axes, doub
           {"rotation_degrees", list_of(turn.angle() * kDegrees * turn.axis())},
           {"rotation_degrees_sigma", list_of(sigmas.head<3>() * kDegrees)},
           {"height_sigma", sigma},
-          {"matrix", rows_of(in_world(motion, axes).matrix())}};
+          {"matrix", rows_of(in_world(motion, map).matrix())}};
 }
 
 // Adds what the targets tell to the object of a registration.
@@ -130,16 +145,10 @@ Json to_json(const Comparison& comparison, const ChangeFacts& facts) {
   const Changes& changes = comparison.changes;
   const auto came = static_cast<std::size_t>(
       std::ranges::count_if(changes.regions, [](const Region& r) { return r.came; }));
-  const map::MapGrid& grid = comparison.grid;
+  const map::WorldAxes map = map::world_axes(comparison.frame, facts.mesh_frame);
   Json json{{"before", facts.before},
             {"after", facts.after},
-            {"map",
-             {{"pixel", grid.pixel},
-              {"columns", grid.columns},
-              {"rows", grid.rows},
-              {"left", grid.left},
-              {"top", grid.top},
-              {"up", list_of(comparison.frame.axes.row(2).transpose())}}},
+            {"map", json_of(comparison.grid, map, facts.crs)},
             {"area_compared", changes.area_compared},
             {"area_unseen", comparison.area_unseen},
             {"area_changed", changes.came.area + changes.gone.area},
@@ -148,9 +157,8 @@ Json to_json(const Comparison& comparison, const ChangeFacts& facts) {
             {"net", {{"volume", changes.net}, {"volume_sigma", changes.net_sigma}}},
             {"noise", json_of(comparison.noise)},
             {"place", json_of(comparison.place)}};
-  json["registration"] = facts.aligned ? json_of(comparison.registration, comparison.frame.axes,
-                                                 comparison.registration_sigma)
-                                       : Json();
+  json["registration"] =
+      facts.aligned ? json_of(comparison.registration, map, comparison.registration_sigma) : Json();
   if (facts.by_targets) add_targets(*facts.by_targets, facts.labels, json["registration"]);
   json["regions"] = json_of(changes.regions);
   return json;

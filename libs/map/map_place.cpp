@@ -1,11 +1,63 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "map/map_place.h"
 
+#include <Eigen/Dense>
+#include <vector>
+
 #include "axial/map.h"
 #include "base/error.h"
+#include "base/naming.h"
+#include "io/bytes/json_entry.h"
 #include "map/up_direction.h"
 
 namespace axial::map {
+namespace {
+
+template <int kRows>
+Eigen::Matrix<double, kRows, kRows> matrix_in(const io::Entry& entry, const char* key) {
+  const nlohmann::json* rows = entry.find(key);
+  const auto expected = fmt::format("{0} rows of {0} numbers", kRows);
+  if (!rows || !rows->is_array() || rows->size() != kRows) entry.refuse(key, expected.c_str());
+  Eigen::Matrix<double, kRows, kRows> matrix;
+  for (int k = 0; k < kRows; ++k) {
+    const nlohmann::json row{{key, (*rows)[static_cast<std::size_t>(k)]}};
+    const std::vector<double> numbers =
+        io::Entry{row, entry.where}.numbers(key, kRows, expected.c_str());
+    matrix.row(k) = Eigen::Map<const Eigen::RowVector<double, kRows>>(numbers.data());
+  }
+  return matrix;
+}
+
+// An object of a comparison, which to_json() of compare/write_changes.h writes.
+io::Entry entry_of(const nlohmann::json& whole, const char* key,
+                   const std::filesystem::path& file) {
+  if (!whole.is_object() || !whole.contains(key) || !whole[key].is_object())
+    fail_in(file, "{} is missing: is it a comparison of CompareSurveys?", key);
+  return {whole[key], file.string() + ": " + key};
+}
+
+Eigen::Isometry3d motion_in(const nlohmann::json& whole, const std::filesystem::path& file) {
+  const bool is_aligned =
+      !whole.is_object() || !whole.contains("registration") || !whole["registration"].is_null();
+  if (!is_aligned) return Eigen::Isometry3d::Identity();
+  const io::Entry registration = entry_of(whole, "registration", file);
+  Eigen::Isometry3d motion;
+  motion.matrix() = matrix_in<4>(registration, "matrix");
+  if (!is_rotation(motion.linear()) || motion.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+    registration.refuse("matrix", "a rotation and a translation");
+  return motion;
+}
+
+MapPlace place_of_later_survey(const std::filesystem::path& file) {
+  const nlohmann::json whole = io::read_json(file);
+  const io::Entry map = entry_of(whole, "map", file);
+  WorldAxes axes{matrix_in<3>(map, "axes"),
+                 Eigen::Vector3d(map.numbers("offset", 3, "3 numbers").data())};
+  if (!is_rotation(axes.axes)) map.refuse("axes", "a rotation");
+  return {after(motion_in(whole, file), axes), map.has("crs") ? map.text("crs") : ""};
+}
+
+}  // namespace
 
 void declare_place(OptionList& list, const std::string& drawn, PlaceOptions& options) {
   const std::string map = "a map of MapSurface on which the " + drawn +
@@ -26,10 +78,23 @@ void take_place(const ParsedOptions& parsed, PlaceOptions& options) {
     if (given(parsed, option)) fail("--{} contradicts --map, which states it", option);
 }
 
+Eigen::Isometry3d motion_of_comparison(const std::filesystem::path& file) {
+  return motion_in(io::read_json(file), file);
+}
+
+WorldAxes after(const Eigen::Isometry3d& motion, const WorldAxes& axes) {
+  return {axes.axes * motion.linear(), axes.axes * motion.translation() + axes.offset};
+}
+
 MapPlace place_of_map(const std::filesystem::path& map) {
+  if (map.extension() == ".json") return place_of_later_survey(map);
   const StatedPlace stated = stated_place(map);
   if (!stated.axes) fail_in(map, "does not state its axes: is it a map of MapSurface?");
   return {*stated.axes, stated.crs};
+}
+
+MapFrame frame_on(const WorldAxes& axes, const LocalFrame& mesh_frame) {
+  return {axes.axes, axes.axes * mesh_frame.origin + axes.offset};
 }
 
 MapPlace place_of(const PlaceOptions& options) {

@@ -2,7 +2,7 @@
 // Where the coordinates of a user's map lie: options that several programs have.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -36,8 +36,21 @@ struct MapPlace {
   std::string crs;
 };
 
-// Error that names the map if it cannot be read or does not state its axes.
+// The motion that aligns the later survey of a comparison of CompareSurveys (.change.json), from
+// its world to that of the earlier survey. Error that names the file if it cannot be read, and for
+// a motion that is not one.
+Eigen::Isometry3d motion_of_comparison(const std::filesystem::path& file);
+
+// The axes for points that the motion moves first.
+WorldAxes after(const Eigen::Isometry3d& motion, const WorldAxes& axes);
+
+// The place of a map of MapSurface, or, if the name ends with ".json", of the map of a comparison,
+// for the world of the later survey. Error that names the file if it cannot be read or does not
+// state its axes.
 MapPlace place_of_map(const std::filesystem::path& map);
+
+// The frame of a mesh on a map.
+MapFrame frame_on(const WorldAxes& axes, const LocalFrame& mesh_frame);
 
 // Errors of place_of_map() and crs_of_epsg() are passed on.
 MapPlace place_of(const PlaceOptions& options);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -185,49 +186,67 @@ std::array<HalfSpace, 2> halves_of(std::span<const Eigen::Vector3d> piece) {
   return {HalfSpace{normal, box.center()}, HalfSpace{-normal, box.center()}};
 }
 
-std::vector<SeenFaces::Hidden> hidden_of(std::span<const Eigen::Vector3d> piece,
-                                         std::span<const SeenFaces::Hidden> hidden) {
-  std::vector<SeenFaces::Hidden> found;
-  std::ranges::copy_if(hidden, std::back_inserter(found), [&](const SeenFaces::Hidden& one) {
-    return std::ranges::none_of(one,
-                                [&](const HalfSpace& half) { return is_outside(half, piece); });
-  });
-  return found;
-}
+using Use = std::function<void(std::span<const Eigen::Vector3d>)>;
+
+// What faces hide of a piece: all of them, and the indices of those that matter.
+struct Hiding {
+  std::span<const SeenFaces::Hidden> all;
+  std::vector<std::uint32_t> found;
+
+  Hiding of_part(std::span<const Eigen::Vector3d> piece) const {
+    Hiding part{all, {}};
+    Eigen::AlignedBox2d box;
+    for (const Eigen::Vector3d& corner : piece) box.extend(corner.head<2>());
+    std::ranges::copy_if(found, std::back_inserter(part.found), [&](std::uint32_t face) {
+      const SeenFaces::Hidden& one = all[face];
+      // Not every face beside a slanting piece has an edge between them.
+      return box.intersects(box_of({one[0].base, one[1].base, one[2].base})) &&
+             std::ranges::none_of(one,
+                                  [&](const HalfSpace& half) { return is_outside(half, piece); });
+    });
+    return part;
+  }
+};
+
+void use_seen_parts(std::span<const Eigen::Vector3d> piece, const Hiding& hiding, const Use& use);
 
 // Below many small faces, the time grows with the square of their number, so a large piece is cut
 // into halves first. Returns false if this does not help. The larger half of a triangle has three
 // quarters of its area.
-bool use_halves(std::span<const Eigen::Vector3d> piece, std::span<const SeenFaces::Hidden> hidden,
-                const std::function<void(std::span<const Eigen::Vector3d>)>& use) {
+bool use_halves(std::span<const Eigen::Vector3d> piece, const Hiding& hiding, const Use& use) {
   std::array<Points, 2> parts;
-  std::array<std::vector<SeenFaces::Hidden>, 2> of_parts;
+  std::array<Hiding, 2> of_parts;
   const std::array<HalfSpace, 2> halves = halves_of(piece);
   for (std::size_t k = 0; k < 2; ++k) {
     geometry::convex_part(piece, halves[k], parts[k]);
-    of_parts[k] = hidden_of(parts[k], hidden);
-    if (10 * of_parts[k].size() > 9 * hidden.size()) return false;
+    of_parts[k] = hiding.of_part(parts[k]);
+    if (10 * of_parts[k].found.size() > 9 * hiding.found.size()) return false;
   }
   for (std::size_t k = 0; k < 2; ++k)
-    if (parts[k].size() > 2) for_seen_parts(parts[k], of_parts[k], use);
+    if (parts[k].size() > 2) use_seen_parts(parts[k], of_parts[k], use);
   return true;
+}
+
+void use_seen_parts(std::span<const Eigen::Vector3d> piece, const Hiding& hiding, const Use& use) {
+  constexpr std::size_t kMany = 24;
+  if (hiding.found.empty()) return use(piece);
+  if (hiding.found.size() > kMany && use_halves(piece, hiding, use)) return;
+  std::vector<Points> parts{{piece.begin(), piece.end()}}, next;
+  for (const std::uint32_t face : hiding.found) {
+    next.clear();
+    for (Points& part : parts) cut(std::move(part), hiding.all[face], next);
+    std::swap(parts, next);
+  }
+  for (const Points& part : parts) use(part);
 }
 
 }  // namespace
 
 void for_seen_parts(std::span<const Eigen::Vector3d> piece,
-                    std::span<const SeenFaces::Hidden> hidden,
-                    const std::function<void(std::span<const Eigen::Vector3d>)>& use) {
-  constexpr std::size_t kMany = 24;
-  if (hidden.empty()) return use(piece);
-  if (hidden.size() > kMany && use_halves(piece, hidden, use)) return;
-  std::vector<Points> parts{{piece.begin(), piece.end()}}, next;
-  for (const SeenFaces::Hidden& one : hidden) {
-    next.clear();
-    for (Points& part : parts) cut(std::move(part), one, next);
-    std::swap(parts, next);
-  }
-  for (const Points& part : parts) use(part);
+                    std::span<const SeenFaces::Hidden> hidden, const Use& use) {
+  Hiding all{hidden, std::vector<std::uint32_t>(hidden.size())};
+  std::iota(all.found.begin(), all.found.end(), 0u);
+  use_seen_parts(piece, all, use);
 }
 
 }  // namespace axial::map

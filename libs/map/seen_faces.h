@@ -36,7 +36,8 @@ class SeenFaces {
 
     double operator()(const Eigen::Vector3d& x) const { return normal.dot(x - base) - shift; }
   };
-  // What a face hides: the places below it, and inside of its edges by more than 1e-9 m.
+  // What a face hides: the places inside of its edges by more than 1e-9 m, and below it. The bases
+  // of the first three half spaces are its corners.
   using Hidden = std::array<HalfSpace, 4>;
 
   // What other faces hide of `face` over `box`. Empty: all of it is seen.

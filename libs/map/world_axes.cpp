@@ -37,6 +37,11 @@ std::vector<double> numbers_in(GDALDatasetH file, const char* item, std::size_t 
 
 }  // namespace
 
+bool is_rotation(const Eigen::Matrix3d& matrix) {
+  constexpr double kTolerance = 1e-6;
+  return (matrix * matrix.transpose()).isIdentity(kTolerance) && matrix.determinant() > 0;
+}
+
 WorldAxes world_axes(const MapFrame& frame, const LocalFrame& mesh_frame) {
   return {frame.axes, frame.origin - frame.axes * mesh_frame.origin};
 }
@@ -56,9 +61,7 @@ std::optional<WorldAxes> axes_in(GDALDatasetH file, const std::filesystem::path&
   if (axes.empty() || offset.empty()) return {};
   WorldAxes result{Eigen::Map<const RowMajor>(axes.data()),
                    Eigen::Map<const Eigen::Vector3d>(offset.data())};
-  constexpr double kTolerance = 1e-6;
-  if (!((result.axes * result.axes.transpose()).isIdentity(kTolerance) &&
-        result.axes.determinant() > 0 && result.offset.allFinite()))
+  if (!(is_rotation(result.axes) && result.offset.allFinite()))
     fail_in(path, "{}: is no rotation", kAxes);
   return result;
 }

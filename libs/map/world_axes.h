@@ -22,6 +22,9 @@ struct WorldAxes {
   }
 };
 
+// True for a rotation, up to 1e-6: texts have fewer digits than numbers.
+bool is_rotation(const Eigen::Matrix3d& matrix);
+
 // What the file of a map states about its coordinates.
 struct StatedPlace {
   std::optional<WorldAxes> axes;  // empty: not stated

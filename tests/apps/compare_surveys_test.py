@@ -251,6 +251,30 @@ class InsideOfABoundary(CompareTest):
              "a.tif"))
 
 
+class Like(CompareTest):
+    def test_maps_lie_on_the_plane_of_a_map(self):
+        self.succeeds(*self.compare("--align", "icp", "--up", "0.1,-0.2,1"))
+        by_up = {name: self.map(name).rows for name in ("difference", "significant", "sigma")}
+        os.rename(self.path("work", "reef.change.difference.tif"), self.path("work", "plane.tif"))
+        self.succeeds(*self.compare("--align", "icp", "--like", "plane.tif"))
+        self.assertEqual({name: self.map(name).rows for name in by_up}, by_up)
+
+    def test_a_comparison_that_states_no_plane_is_refused(self):
+        self.succeeds(*self.compare("--align", "icp"))
+        report = self.report()
+        turned = [[2, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+        for told, changed in (
+                ("map.axes is null, but must be 3 rows of 3 numbers", {"map": {**report["map"], "axes": None}}),
+                ("map.axes is [[1,0,0],[0,1,0]], but must be 3 rows of 3 numbers",
+                 {"map": {**report["map"], "axes": [[1, 0, 0], [0, 1, 0]]}}),
+                ("registration.matrix is [[2,0,0,0]", {"registration": {"matrix": turned}}),
+                ("map is missing: is it a comparison of CompareSurveys?", {"map": 1})):
+            write(self.path("work", "other.json"), json.dumps({**report, **changed}))
+            self.refuses(told, *self.compare("--like", "other.json"))
+        for more in (("--up", "0,0,1"), ("--epsg", "32631")):
+            self.refuses(f"{more[0]} contradicts --like, which states it", *self.compare("--like", "other.json", *more))
+
+
 class UpAndDown(CompareTest):
     """What came and what went is never exchanged: the result is right, or it is refused."""
 

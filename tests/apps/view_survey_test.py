@@ -146,6 +146,15 @@ class Folder(SurveyCase):
         self.assertNotIn("inside out", self.succeeds(*self.view("-m", seen)).stdout)
         self.assertIn(f"warning: {other}: the mesh is inside out", self.succeeds(*self.view("-m", other)).stdout)
 
+    def test_orthomosaics_of_other_colours_and_of_the_earlier_survey_are_layers(self):
+        for name in ("raw", "old"):
+            shutil.copy(self.path("work", "map.ortho.tif"), self.path("work", f"{name}.ortho.tif"))
+        self.succeeds(*self.survey("--raw-map", "raw", "--earlier-map", "old"))
+        titles = {layer["id"]: layer["title"] for layer in self.shown()["map"]["layers"]}
+        self.assertEqual([titles[name] for name in ("raw-ortho", "earlier-ortho")],
+                         ["Orthomosaic with water", "Orthomosaic of the earlier survey"])
+        self.refuses_and_keeps("none.ortho.tif", *self.survey("--earlier-map", "none"))
+
     def test_maps_and_changes_can_have_the_same_prefix(self):
         for name in os.listdir(self.work):
             if name.startswith("survey.change"):

@@ -4,6 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.h"
+#include "compare/write_changes.h"
+#include "io/bytes/json.h"
+#include "map/map_place.h"
+#include "support/empty_folder.h"
 #include "support/error_of.h"
 #include "two_surveys.h"
 
@@ -92,10 +99,40 @@ TEST(Registration, LeavesIdenticalSurveysWhereTheyAre) {
 
 TEST(Registration, InWorldMovesPointsAsInTheMap) {
   const RigidMotion motion = small_motion({3, -2, 1});
-  const map::MapFrame frame = map::frame_with_up({0.2, -0.4, 0.7}, {});
+  // Far from the origin of the world, and with heights from a place near the mesh.
+  const LocalFrame near{{500, -300, 40}};
+  const map::MapFrame frame = map::frame_with_up({0.2, -0.4, 0.7}, near);
   const Eigen::Vector3d x(0.3, 1.2, -0.8);
-  EXPECT_LT((frame.to_map(in_world(motion, frame.axes)(x)) - moved(frame, motion).to_map(x)).norm(),
-            1e-12);
+  const Similarity found = in_world(motion, map::world_axes(frame, near));
+  EXPECT_LT((frame.to_map(near.to_local(found(near.to_world(x)))) - moved(frame, motion).to_map(x))
+                .norm(),
+            1e-11);
+}
+
+using ComparisonFile = FolderTest;
+
+TEST_F(ComparisonFile, PlacesMapsOfTheLaterSurvey) {
+  const LocalFrame near{{500, -300, 40}};
+  Comparison comparison;
+  comparison.frame = map::frame_with_up({0.2, -0.4, 0.7}, near);
+  comparison.registration.motion = small_motion({3, -2, 1});
+  ChangeFacts facts;
+  facts.aligned = true;
+  facts.mesh_frame = near;
+  facts.crs = "a system";
+  const std::filesystem::path file = folder_ / "a.change.json";
+  write_atomically(file, io::to_text(to_json(comparison, facts)));
+  const map::MapPlace place = map::place_of_map(file);
+  EXPECT_EQ(place.crs, "a system");
+  const Eigen::Vector3d x(0.3, 1.2, -0.8);
+  const map::MapFrame later = moved(comparison.frame, comparison.registration.motion);
+  EXPECT_LT((map::frame_on(place.axes, near).to_map(x) - later.to_map(x)).norm(), 1e-10);
+  facts.aligned = false;
+  write_atomically(file, io::to_text(to_json(comparison, facts)));
+  EXPECT_LT(
+      (map::frame_on(map::place_of_map(file).axes, near).to_map(x) - comparison.frame.to_map(x))
+          .norm(),
+      1e-10);
 }
 
 TEST(Registration, NeedsCommonGround) {

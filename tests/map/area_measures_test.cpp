@@ -249,6 +249,9 @@ TEST(AreaMeasures, LargeFacesBelowSmallOnesAreHidden) {
   EXPECT_NEAR(closed.planar, open.planar, 1e-5);
   EXPECT_EQ(closed.lowest, open.lowest);
   EXPECT_NEAR(closed.surface, open.surface + 1.8 * 1.8, 1e-5);
+  // A band along the diagonals of the faces: most faces beside it have no edge that separates them.
+  const Area band{"band", {{{{-0.9, -0.9}, {0.9, 0.85}, {0.9, 0.9}}}}};
+  EXPECT_NEAR(AreaMeter(mesh, Eigen::Vector3d::Zero()).measure(band).planar, 1.8 * 0.05 / 2, 1e-5);
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ def not_given_again(options, words):
 
 def states_system(words):
     """Whether the `words` of the user name a map that states the coordinate reference system."""
-    return any(find_option(word, OF_PROGRAMS) == "--boundary-map" for word in words)
+    return any(find_option(word, (*OF_PROGRAMS, "--like")) in ("--boundary-map", "--like") for word in words)
 
 
 def places_of(given, out):

@@ -16,6 +16,8 @@ from .steps import Files, Report, Step, Tiles
 RUN_FILE = "run.json"
 RESTORED = "restored"  # the folder of the photographs without water
 REFRACTIVE = ("--refractive", 1)
+CHANGE = "scene.change.json"
+PLACES = ("--up", "--epsg", "--like", "--boundary-map")  # options for the axes of a map
 
 
 def meshes(out):
@@ -280,6 +282,27 @@ def words_about_registration(run, words):
     return [("--align", "auto"), *zip(("--targets", "--other-targets"), places)], places
 
 
+def earlier_map(given):
+    """The map of the survey of --earlier, without the ends of the names of its files."""
+    return pathlib.Path(given.earlier).parent / "scene_map"
+
+
+def orthomosaic(prefix):
+    return prefix.with_name(f"{prefix.name}.ortho.tif")
+
+
+def words_about_earlier_map(run):
+    """The option of CompareSurveys for the axes of the map of the earlier survey, if it has one and nothing else says
+    which axes to take."""
+    heights = pathlib.Path(f"{earlier_map(run.given)}.dem.tif")
+    is_free = not run.given.epsg and not any(has_option(run.words("compare"), option) for option in PLACES)
+    return ["--like", heights] if is_free and heights.exists() else []
+
+
+def shows_earlier_map(run, wanted):
+    return "compare" in wanted and bool(words_about_earlier_map(run)) and orthomosaic(earlier_map(run.given)).exists()
+
+
 def words_about_surveys(words, known, earlier, scene):
     """The options of CompareSurveys that the user did not give among `words`: those that are `known`, and the
     scenes of both surveys if the earlier one has one beside its mesh."""
@@ -295,7 +318,9 @@ def words_about_results(run, wanted):
     return not_given_again([("--run", out / RUN_FILE), ("--sfm-model", run.refined),
                             *([("--truth", run.given.truth)] if run.given.truth else []),
                             *([("--map", out / "scene_map")] if "map" in wanted else []),
+                            *([("--raw-map", out / "scene_map_raw")] if "raw-map" in wanted else []),
                             *([("--change", out / "scene")] if "compare" in wanted else []),
+                            *([("--earlier-map", earlier_map(run.given))] if shows_earlier_map(run, wanted) else []),
                             *([("--depth-maps", out)] if kept_maps else []),
                             *([("--colors", out / RESTORED)] if "colors" in wanted else [])], run.own("page"))
 
@@ -318,11 +343,14 @@ def map_step(run, name, mesh, output, *options):
     words = run.words("map")
     if name == "raw-map":
         words = without_options(words, ("--colors",))
+    is_like_change = "compare" in wanted_steps(run.given) and not any(has_option(words, one) for one in PLACES)
+    place = ["--like", run.out / CHANGE] if is_like_change else run.system(words)
     command = run.programs.map_surface(run.scene, mesh, output, *REFRACTIVE,
-                                       *mask_words(run.words("texture"), words), *options, *run.system(words),
+                                       *mask_words(run.words("texture"), words), *options, *place,
                                        *boundary.not_given_again(boundary.options(run.given, run.out), words), *words)
     made = [output.with_name(f"{output.name}.{kind}.tif") for kind in ("dem", "ortho", "views")]
-    also = [*read_by(command, run.own("texture")), *(read_by(command, run.own("map")) if name != "map" else [])]
+    also = [*read_by(command, run.own("texture")), *(read_by(command, run.own("map")) if name != "map" else []),
+            *(place[1:] if is_like_change else [])]
     return run.step(name, command, Files(*made), also=[*also, *boundary.files_of(run.given, run.out)],
                     anew=run.made_before(name))  # not every command writes all of them again
 
@@ -339,9 +367,9 @@ def map_steps(run, wanted):
 
 
 def survey_steps(run, wanted):
-    """The steps from the mesh to maps, to the comparison with an earlier survey, and to the page."""
+    """The steps from the mesh to the comparison with an earlier survey, to maps, which then lie in the coordinates of
+    the earlier survey, and to the page."""
     given, out, programs = run.given, run.out, run.programs
-    yield from map_steps(run, wanted)
     if "compare" in wanted:
         earlier, words = pathlib.Path(given.earlier).with_name(run.scene.name), run.words("compare")
         registration, places = words_about_registration(run, words)
@@ -349,14 +377,18 @@ def survey_steps(run, wanted):
         limits = boundary.options_of_comparison(given, out, of_earlier)
         command = programs.compare_surveys(given.earlier, best_mesh(given, out), out / "scene",
                                            *words_about_surveys(words, registration, earlier, run.scene),
-                                           *run.system(words), *boundary.not_given_again(limits, words), *words)
+                                           *words_about_earlier_map(run), *run.system(words), *boundary.not_given_again(limits, words), *words)
         read = dict.fromkeys([*places[:1], *([of_earlier] if limits else []), *boundary.files_of(given, out)])
-        yield run.step("compare", command, out / "scene.change.json", reads=[given.earlier, earlier, *read],
+        yield run.step("compare", command, out / CHANGE,
+                       reads=[given.earlier, earlier, *words_about_earlier_map(run)[1:], *read],
                        anew=run.made_before("compare"))
+    yield from map_steps(run, wanted)
     if "page" in wanted:
         command = programs.view_scene(run.scene, shown_cloud(given, out), whole_mesh(run, wanted), out / "page",
                                       *REFRACTIVE, *words_about_results(run, wanted), *run.words("page"))
-        yield run.step("page", command, out / "page" / "index.html", also=[given.truth] if given.truth else [],
+        also = [*([given.truth] if given.truth else []),
+                *([orthomosaic(earlier_map(given))] if shows_earlier_map(run, wanted) else [])]
+        yield run.step("page", command, out / "page" / "index.html", also=also,
                        before=lambda: write_run_before("page", given, out))
 
 

@@ -62,12 +62,12 @@ KINDS = {
     "restored-refine-mesh": Kind(["scene_restored_refined.*"], (8000, 4, 60, 1), result="texture", has_limits=True),
     "texture": Kind([f"scene_textured{tile}{end}" for tile in ("", TILE) for end in TEXTURED], (8000, 4, 60, 0.5),
                     "TextureMesh", result="texture", can_be_left_out=True, takes_masks=True, has_limits=True),
-    "map": Kind([f"scene_map.{kind}" for kind in MAPS], (8000, 4, 60, 0.5), "MapSurface", result="map",
-                can_be_left_out=True, has_limits=True),  # gets the masks of "texture"
-    "raw-map": Kind([f"scene_map_raw.{kind}" for kind in MAPS], (8000, 4, 60, 0.5), result="map", has_limits=True),
     "compare": Kind([f"{name}.{kind}" for name in ("scene.change", "scene_change")  # the last: of older versions
                      for kind in CHANGES], (8000, 4, 30, 0.1), "CompareSurveys", result="mesh",
                     has_limits=True),
+    "map": Kind([f"scene_map.{kind}" for kind in MAPS], (8000, 4, 60, 0.5), "MapSurface", result="map",
+                can_be_left_out=True, has_limits=True),  # gets the masks of "texture"
+    "raw-map": Kind([f"scene_map_raw.{kind}" for kind in MAPS], (8000, 4, 60, 0.5), result="map", has_limits=True),
     "page": Kind(["page", "run.json", "run.json.tmp"], (8000, 1, 30, 0.05), "ViewScene", result="page",
                  can_be_left_out=True),
     "evaluate": Kind(["evaluation.json"], (8000, 0, 60, 0)),
