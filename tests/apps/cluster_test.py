@@ -19,7 +19,7 @@ from support import colmap_text
 RESULTS = ("scene_dense.mvs", "scene_dense.ply", "scene_dense_mesh.ply", "scene_dense_refined.ply",
            *(f"scene_textured.tile{tile}-2.{kind}" for tile in (1, 2) for kind in ("glb", "ply")),
            "scene_map.dem.tif", "scene_map.ortho.tif")
-VIEWS = 40
+VIEWS = 16
 LONGEST_WAIT = 300  # [s]: other tests may use the processors
 SLURM = ("--cluster", "slurm", "--snakemake=--max-status-checks-per-second 1")
 ON_TWO_NODES = unittest.skipIf(small_slurm.reason_to_skip(), small_slurm.reason_to_skip())
@@ -59,7 +59,8 @@ def put_script(path, text):
 
 @unittest.skipUnless(shutil.which("snakemake"), "snakemake is not installed")
 class Cluster(unittest.TestCase):
-    """A survey of small views, and the results of `reconstruct` alone, with which all cases compare."""
+    """A survey of small views, and the folder of a run of `reconstruct` alone, with which all cases compare. Jobs of
+    Slurm start snakemake twice, so cases with Slurm begin with a copy of this folder (as_left_alone)."""
 
     @classmethod
     def setUpClass(cls):
@@ -77,7 +78,17 @@ class Cluster(unittest.TestCase):
         (cls.folder / "colmap").mkdir()
         put_script(cls.folder / "colmap" / "colmap", COLMAP.format(model=cls.folder / "model"))
         cls.environment = {**os.environ, "PATH": f"{cls.folder / 'colmap'}:{os.environ['PATH']}"}
-        cls.reconstruct("alone")
+        cls.reconstruct("out")
+        (cls.folder / "out").rename(cls.folder / "alone")
+
+    def as_left_alone(self, *removed):
+        """The folder "out" as the run alone left it, without the files of the patterns `removed`."""
+        out = self.folder / "out"
+        shutil.rmtree(out, ignore_errors=True)
+        shutil.copytree(self.folder / "alone", out)
+        for pattern in removed:
+            for file in out.glob(pattern):
+                file.unlink()
 
     @classmethod
     def start(cls, out, *more, **process):
@@ -104,10 +115,11 @@ class Cluster(unittest.TestCase):
         for name in results:
             self.assertEqual((self.folder / out / name).read_bytes(),
                              (self.folder / "alone" / name).read_bytes(), name)
+
+    def check_jobs(self, out, *tiled):
+        """That jobs made the depth maps, and the tiles of the steps `tiled`."""
         parts = {f"depth-{stage}-{part}of2" for stage in ("photometric", "geometric1")
                  for part in (1, 2)}
-        tiled = [step for step, result in (("densify", RESULTS[1]), ("mesh", RESULTS[2]))
-                 if result in results]
         tiles = {f"{step}-tile-{tile}of2" for step in tiled for tile in (1, 2)}
         self.assertLessEqual(parts | {"depth-photometric-whole"} | tiles, self.steps_done(out))
 
@@ -121,41 +133,46 @@ class Cluster(unittest.TestCase):
             time.sleep(0.01)
 
     def test_gives_the_same_bytes_after_it_was_killed(self):
-        process = self.start("out", "--cluster", "local")
-        self.wait_for_part(process, "out")
+        process = self.start("killed", "--cluster", "local")
+        self.wait_for_part(process, "killed")
         process.kill()
         process.communicate(timeout=30)  # returns when all processes have closed their output
-        before = self.steps_done("out")
+        before = self.steps_done("killed")
         self.assertIn("plan", before)
         self.assertNotIn("densify", before)
         # TextureMesh fails, because jobs on this machine are not repeated.
-        process = self.start("out", "--cluster", "local")
+        process = self.start("killed", "--cluster", "local")
         said = process.communicate(timeout=2 * LONGEST_WAIT)[0]
         self.assertEqual(process.returncode, 1)
         self.assertIn("reconstruct: texture: texture: exit code 1, its output is in", said)
         self.assertIn("reconstruct: snakemake: exit code 1; ", said)
         self.assertNotIn("rule refine:", said)
-        said = self.reconstruct("out", "--cluster", "local", "--snakemake=--set-resources "
+        said = self.reconstruct("killed", "--cluster", "local", "--snakemake=--set-resources "
                                 "texture:mem_mb=20000 --resources mem_mb=20000")
         self.assertNotIn("rule densify:", said)
-        self.check("out")
+        self.check("killed")
+        self.check_jobs("killed", "densify", "mesh")
         # Alone, nothing is left to do.
-        self.assertEqual(self.reconstruct("out").count("done before"), 11)
-        self.assertNotIn("\nrule ", self.reconstruct("out", "--cluster", "local"))
+        self.assertEqual(self.reconstruct("killed").count("done before"), 11)
+        self.assertNotIn("\nrule ", self.reconstruct("killed", "--cluster", "local"))
 
     def test_uses_complete_depth_maps_for_other_options_of_the_fusion(self):
         """A run alone has removed the maps of all stages but the last."""
         twice = f"--densify={DENSIFY.replace('iters 1', 'iters 2')}"
         other = f"{twice} --number-views-fuse 2"
-        self.reconstruct("twice", "--until", "cloud", twice)
-        before = (self.folder / "twice" / "depth0001.dmap").stat().st_mtime_ns
-        self.reconstruct("twice", "--until", "cloud", other, "--cluster", "local")
-        self.assertEqual((self.folder / "twice" / "depth0001.dmap").stat().st_mtime_ns, before)
-        self.reconstruct("expected", "--until", "cloud", other)
-        for out in ("twice", "expected"):
-            self.assertEqual(list((self.folder / out).glob("depth*.*.dmap")), [])
-        self.assertEqual((self.folder / "twice" / "scene_dense.ply").read_bytes(),
-                         (self.folder / "expected" / "scene_dense.ply").read_bytes())
+        a_map, clouds = self.folder / "out" / "depth0005.dmap", []
+        self.as_left_alone()
+        self.reconstruct("out", "--until", "cloud", twice)
+        before = a_map.stat().st_mtime_ns
+        self.reconstruct("out", "--until", "cloud", other, "--cluster", "local")
+        self.assertEqual(a_map.stat().st_mtime_ns, before)
+        clouds.append((self.folder / "out" / "scene_dense.ply").read_bytes())
+        self.assertEqual(list((self.folder / "out").glob("depth*.*.dmap")), [])
+        self.as_left_alone("*.dmap*")
+        self.reconstruct("out", "--until", "cloud", other)
+        clouds.append((self.folder / "out" / "scene_dense.ply").read_bytes())
+        self.assertEqual(list((self.folder / "out").glob("depth*.*.dmap")), [])
+        self.assertEqual(*clouds)
 
     def start_cluster(self):
         self.cluster = small_slurm.Cluster()
@@ -183,7 +200,8 @@ class Cluster(unittest.TestCase):
         (programs / "DensifyPointCloud").unlink()
         put_script(programs / "DensifyPointCloud",
                    SLOW.format(program=pathlib.Path(BIN).resolve() / "DensifyPointCloud"))
-        process = self.start("interrupted", *SLURM, f"--densify={DENSIFY[:-1]}8", "--programs",
+        self.as_left_alone("steps/poses.done.json")
+        process = self.start("out", *SLURM, f"--densify={DENSIFY[:-1]}8", "--programs",
                              str(programs), start_new_session=True)
         self.cluster.wait_for(lambda: self.cluster.ask("squeue", "-h", "-o", "%j").count("of8-") == 8, LONGEST_WAIT)
         time.sleep(4)  # until snakemake asks for the states of all of them
@@ -197,27 +215,29 @@ class Cluster(unittest.TestCase):
     @ON_TWO_NODES
     def test_gives_the_same_bytes_also_if_a_node_dies(self):
         self.start_cluster()
-        said = self.reconstruct("nodes", *SLURM)
-        self.check("nodes")
-        self.assertIn("Trying to restart job", said)  # TextureMesh, with twice the memory
-        for node in small_slurm.NODES:
-            self.assertRegex(self.cluster.log("slurmctld"), f"( on |NodeList=){node}\\b")
-        out = self.folder / "nodes"
         # The records of begun steps stay: without them, the rest of the files would be the user's.
-        for file in [*out.glob("*.dmap*"), out / "steps" / "plan.json", *out.glob("steps/plan.done*"),
-                     *out.glob("steps/depth-*.done*"), *out.glob("steps/densify*.done*"),
-                     *out.glob("scene_dense*")]:
-            file.unlink()
-        process = self.start("nodes", *SLURM, "--until", "cloud")
+        self.as_left_alone("*.dmap*", "steps/densify.done.json", "scene_dense.*")
+        process = self.start("out", *SLURM, "--until", "cloud")
         self.cluster.wait_for(self.node_of_part, LONGEST_WAIT)
         job, node = self.node_of_part()
         self.cluster.kill(node)
-        self.assertNotIn("depth-photometric-1of2", self.steps_done("nodes"))
+        self.assertNotIn("depth-photometric-1of2", self.steps_done("out"))
         said = process.communicate(timeout=LONGEST_WAIT)[0]
         self.assertEqual(process.returncode, 0, said)
         self.assertRegex(self.cluster.log("slurmctld"),
                          f"requeue job JobId={job} due to failure of node {node}")
-        self.check("nodes", RESULTS[:2])
+        self.check("out", RESULTS[:2])
+        self.check_jobs("out", "densify")
+        for node in small_slurm.NODES:
+            self.assertRegex(self.cluster.log("slurmctld"), f"( on |NodeList=){node}\\b")
+
+    @ON_TWO_NODES
+    def test_a_job_that_fails_gets_twice_the_memory(self):
+        self.start_cluster()
+        self.as_left_alone("steps/texture.done.json", "scene_textured.*")
+        said = self.reconstruct("out", *SLURM, "--until", "texture")
+        self.assertIn("Trying to restart job", said)
+        self.check("out", RESULTS[:-2])
 
 
 if __name__ == "__main__":
