@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scenes in UTM coordinates: every program gives the same result as near the origin."""
 
+import itertools
 import json
 import math
 import os
@@ -20,14 +21,16 @@ QUICK = ("--resolution-level", "1", "--min-resolution", "100", "--geometric-iter
 
 def share_near(points, others, within):
     """The fraction of `points` that have one of `others` closer than `within`."""
-    cells = {}
-    key = lambda p: tuple(math.floor(c / within) for c in p)
+    cells = {}  # of twice the distance, so that the points closer than `within` are in 8 cells at most
+    cell = lambda c: math.floor(c / (2 * within))
     for point in others:
-        cells.setdefault(key(point), []).append(point)
-    around = [(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)]
-    near = sum(any(math.dist(p, q) < within for d in around
-                   for q in cells.get(added(key(p), d), ())) for p in points)
-    return near / len(points)
+        cells.setdefault(tuple(map(cell, point)), []).append(point)
+
+    def has_near(p):
+        around = itertools.product(*({cell(c - within), cell(c + within)} for c in p))
+        return any(math.dist(p, q) < within for place in around for q in cells.get(place, ()))
+
+    return sum(map(has_near, points)) / len(points)
 
 
 class BitForBit(ProgramTest):
