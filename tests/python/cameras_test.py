@@ -112,7 +112,7 @@ class OfEveryKind(unittest.TestCase):
             self.assertEqual(found.shape, (POINTS, 2, 3))
             # The second derivatives of near points give 1e-6 of the largest derivative.
             largest = np.abs(expected).max(axis=(1, 2), keepdims=True)
-            np.testing.assert_array_less(np.abs(found - expected), 1e-6 * largest)
+            self.assertLess((np.abs(found - expected) / largest).max(), 1e-6, camera)
 
     def test_virtual_cameras_image_rays_at_their_pixels(self):
         for camera, pixels, random in self.cameras():
@@ -167,10 +167,10 @@ class Arguments(unittest.TestCase):
     def test_numbers_that_are_not_possible_are_named(self):
         flat = {"distance": 0.02, "thickness": 0.01, "n_glass": 1.5, "n_water": 1.34}
         for said, call in (
-                ("FlatPort: distance", lambda: axialmvs.FlatPort(**flat | {"distance": -1})),
-                ("FlatPort: normal", lambda: axialmvs.FlatPort(**flat, normal=(0, 0, 0))),
-                ("FlatPort: n_water", lambda: axialmvs.FlatPort(**flat | {"n_water": 0.5})),
-                ("DomePort: centre", lambda: axialmvs.DomePort(inner_radius=0.1, thickness=0.01, n_glass=1.5,
+                ("FlatPort.distance_m", lambda: axialmvs.FlatPort(**flat | {"distance": -1})),
+                ("FlatPort.normal", lambda: axialmvs.FlatPort(**flat, normal=(0, 0, 0))),
+                ("FlatPort.n_water", lambda: axialmvs.FlatPort(**flat | {"n_water": 0.5})),
+                ("DomePort.center_m", lambda: axialmvs.DomePort(inner_radius=0.1, thickness=0.01, n_glass=1.5,
                                                                n_water=1.34, centre=(0, 0, 0.1))),
                 ("Camera.width 0", lambda: axialmvs.Camera(LENS, width=0, height=1)),
                 ("Camera.lens.fx nan", lambda: axialmvs.Camera(axialmvs.Lens(np.nan, 1, 0, 0), width=1, height=1)),
@@ -223,7 +223,7 @@ class Files(unittest.TestCase):
         path.write_text('{"version": 1, "ports": {"a": {"type": "cube"}}, "default": "a"}')
         with self.assertRaises(axialmvs.Error) as raised:
             axialmvs.read_housing(path)
-        self.assertEqual(raised.exception.file, str(path))
+        self.assertTrue(raised.exception.text.startswith(str(path)))
         self.assertEqual(raised.exception.setting, "")
         self.assertEqual(raised.exception.text, str(raised.exception))
         self.assertIn("cube", raised.exception.text)

@@ -43,8 +43,9 @@ def scene(camera=CAMERA):
     grid = np.array([[0.05 * i - 0.5, 0.05 * k - 0.5, GROUND] for i in range(30) for k in range(30)])
     seen = np.array([inside(camera, grid - image.centre) for image in images]).T
     grid, seen = grid[seen.sum(axis=1) > 1], seen[seen.sum(axis=1) > 1]
-    begin = np.concatenate([[0], np.cumsum(seen.sum(axis=1))])
-    return axialmvs.Scene(images, grid.astype(np.float32), begin, np.nonzero(seen)[1].astype(np.uint32))
+    begin = np.concatenate([[0], np.cumsum(seen.sum(axis=1))]).astype(np.uint64)
+    return axialmvs.Scene(images, grid.astype(np.float32), begin, np.nonzero(seen)[1].astype(np.uint32),
+                          np.zeros(seen.sum(), np.float32))
 
 
 def photographs():
