@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # cmake --install: programs, their man pages and documents (component "programs"); libraries, the public
-# headers (libs/public and refractive) and the CMake package AxialMVS (component "development"). cpack -G DEB makes
-# a package of the programs.
+# headers (libs/public and refractive) and the CMake package AxialMVS (component "development"); the Python package
+# (component "python", python/CMakeLists.txt). cpack -G DEB makes a package of the programs and one for Python.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -105,7 +105,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/AxialMVSConfigVersion.cma
 install(FILES ${PROJECT_BINARY_DIR}/AxialMVSConfig.cmake ${PROJECT_BINARY_DIR}/AxialMVSConfigVersion.cmake
   DESTINATION ${package_dir} COMPONENT development)
 
-# The Debian package.
+# The Debian packages.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME axialmvs)
 set(CPACK_PACKAGE_VENDOR AxialMVS)
@@ -122,4 +122,14 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # The scripts run python3 and colmap.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3, colmap")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "snakemake, slurm-client")  # for axial-reconstruct --cluster
+if(AXIAL_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-axialmvs)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  # The module is for one version of Python.
+  math(EXPR next "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3-numpy, python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next})")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-matplotlib)
+endif()
 include(CPack)

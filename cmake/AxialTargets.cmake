@@ -15,6 +15,11 @@ target_compile_options(axial_flags INTERFACE
   # No code reads errno or uses floating-point traps. The results are the same, and square roots
   # need no branch.
   -fno-math-errno -fno-trapping-math)
+# The module of the Python package contains the libraries. In position-independent code, functions that
+# could be replaced by another library are not inlined, unless the second option forbids this.
+if(AXIAL_PYTHON)
+  target_compile_options(axial_flags INTERFACE -fPIC -fno-semantic-interposition)
+endif()
 if(AXIAL_SANITIZE)
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     message(FATAL_ERROR "AXIAL_SANITIZE needs clang++ (CMAKE_CXX_COMPILER), for libFuzzer")

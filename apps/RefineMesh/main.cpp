@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
 
 #include "base/error.h"
 #include "base/memory.h"
@@ -57,29 +56,6 @@ Mesh read_mesh(const Options& options, const LocalFrame& frame, bool& has_marks,
   return naming(options.mesh, [&] { return mesh::clean(mesh, fewer); });
 }
 
-// How the allowed memory is shared out.
-struct Shares {
-  std::size_t images = 1;  // kept at the same time
-  MemoryBudget for_refinement;
-};
-
-Shares share_out(const MemoryBudget& memory, const survey::Survey& survey) {
-  std::uint64_t image = 0, decode = 0;
-  for (const survey::View& view : survey.views) {
-    const std::uint64_t pixels = view.pixels();
-    image = std::max(image, survey::bytes_needed({pixels, view.masked(), false}));
-    decode = std::max(decode, survey::bytes_needed_to_load(view.decoding_bytes(), pixels));
-  }
-  const std::uint64_t left = memory.left();
-  const std::uint64_t room = left - std::min(left, decode);
-  Shares shares;
-  shares.images = std::clamp<std::size_t>(room / 8 / std::max<std::uint64_t>(image, 1), 2,
-                                          std::max<std::size_t>(survey.views.size(), 2));
-  const std::uint64_t images = std::min(room, shares.images * image);
-  shares.for_refinement = MemoryBudget::of_bytes(room - images);
-  return shares;
-}
-
 // The state after the last resolution that an earlier run with the same input finished, or a state
 // that begins with `mesh`.
 refine::State first_state(Mesh mesh, const Options& options, const std::string& fingerprint,
@@ -101,7 +77,7 @@ Mesh refine_mesh(Mesh mesh, const survey::Survey& survey, const Options& options
       refine::fingerprint(mesh, options.refine, survey::fingerprint_of_views(survey, context));
   refine::State state = first_state(std::move(mesh), options, fingerprint, context);
   return_freed_memory();
-  const Shares shares = share_out(context.memory(), survey);
+  const survey::ImageShares shares = survey::share_out(context.memory(), survey);
   survey::ImageStore images(survey, survey::Channels::grey, shares.images);
   images.check_all(1, context);
   refine::Options settings = options.refine;
@@ -114,7 +90,7 @@ Mesh refine_mesh(Mesh mesh, const survey::Survey& survey, const Options& options
           return refine::Picture{image->grey, image->mask};
         },
         settings, [&](const refine::State& now) { of_run.write(now, fingerprint); },
-        Context(context, shares.for_refinement));
+        Context(context, shares.for_work));
   });
   survey.photograph_check->report(context);
   const refine::Report& report = state.report;

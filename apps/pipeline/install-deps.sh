@@ -15,6 +15,8 @@ packages=(
   # to test
   clang-format doxygen dpkg-dev file libgtest-dev libgmock-dev librapidcheck-dev
   clang libclang-rt-dev
+  # for the Python package (AXIAL_PYTHON)
+  pybind11-dev python3-dev python3-numpy
   # for the laboratory (AXIAL_SCIENCE): benchmarks, and figures of docs/paper
   libbenchmark-dev python3-matplotlib
   # to test the page of ViewScene

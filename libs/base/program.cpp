@@ -23,10 +23,7 @@
 #include "base/message.h"
 #include "base/newer_options.h"
 #include "base/option_values.h"
-#include "base/out_of_memory.h"
 #include "base/output_name.h"
-#include "base/quiet_errors.h"
-#include "base/standard_streams.h"
 
 namespace axial {
 namespace po = boost::program_options;
@@ -386,42 +383,6 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
   take_values(std::array{&program.visible, &program.hidden}, parsed);
   parsed.run = true;
   return parsed;
-}
-
-namespace {
-
-// The loader calls this function before it initialises the libraries, because a library might open
-// files or run out of memory.
-void prepare_process(int, char**, char**) {
-  open_standard_streams();
-  report_uncaught_exceptions();
-}
-
-[[gnu::section(".preinit_array"),
-  gnu::used]] void (*const prepare_process_first)(int, char**, char**) = prepare_process;
-
-// The start of a line of output. On a terminal it erases a line of progress.
-std::string line_start(int descriptor) {
-  return ::isatty(descriptor) != 0 ? "\r\033[K" : "";
-}
-
-void say_error(const std::string& name, std::string_view what) {
-  std::cerr << line_start(STDERR_FILENO) << name << ": " << what << "\n";
-  log_to_file_only(what);
-}
-
-}  // namespace
-
-int run_program(const std::string& name, const std::function<int()>& body) {
-  try {
-    start_log(name, line_start(STDOUT_FILENO));
-    filter_errors();
-    return body();
-  } catch (const std::exception& error) {
-    say_error(name, is_out_of_memory(error) ? "out of memory"
-                                            : as_message(log_words(marked_text(error))));
-  }
-  return 1;
 }
 
 }  // namespace axial

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "survey/image_store.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "base/first_error.h"
@@ -48,6 +49,23 @@ void ImageStore::check(std::span<const std::size_t> views, std::size_t at_once,
     counter.add();
   });
   error.rethrow();
+}
+
+ImageShares share_out(const MemoryBudget& memory, const Survey& survey) {
+  std::uint64_t image = 0, decode = 0;
+  for (const View& view : survey.views) {
+    const std::uint64_t pixels = view.pixels();
+    image = std::max(image, bytes_needed({pixels, view.masked(), false}));
+    decode = std::max(decode, bytes_needed_to_load(view.decoding_bytes(), pixels));
+  }
+  const std::uint64_t left = memory.left();
+  const std::uint64_t room = left - std::min(left, decode);
+  ImageShares shares;
+  shares.images = std::clamp<std::size_t>(room / 8 / std::max<std::uint64_t>(image, 1), 2,
+                                          std::max<std::size_t>(survey.views.size(), 2));
+  const std::uint64_t images = std::min(room, shares.images * image);
+  shares.for_work = MemoryBudget::of_bytes(room - images);
+  return shares;
 }
 
 }  // namespace axial::survey

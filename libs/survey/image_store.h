@@ -59,4 +59,13 @@ class ImageStore {
   SharedCache<Pixels> cache_;
 };
 
+// How the memory of a stage is divided between an ImageStore of grey levels and the other work.
+struct ImageShares {
+  std::size_t images = 1;  // capacity of the ImageStore
+  MemoryBudget for_work;
+};
+
+// An eighth of what is left is for images, but at least two, besides the memory to read one.
+ImageShares share_out(const MemoryBudget& memory, const Survey& survey);
+
 }  // namespace axial::survey

@@ -17,16 +17,6 @@ void require_above_zero(double value, const std::string& field) {
   if (!(value > 0) || !std::isfinite(value)) fail("{} {}: must be above 0", field, value);
 }
 
-void check_camera(const CameraModel& camera, const std::string& field) {
-  require_above_zero(camera.width, field + ".width");
-  require_above_zero(camera.height, field + ".height");
-  require_above_zero(camera.lens.fx, field + ".lens.fx");
-  require_above_zero(camera.lens.fy, field + ".lens.fy");
-  if (!std::isfinite(camera.lens.cx) || !std::isfinite(camera.lens.cy))
-    fail("{}.lens has the principal point {} {}", field, camera.lens.cx, camera.lens.cy);
-  if (camera.port) io::check_port(*camera.port, field + ".port");
-}
-
 void check_pose(const Pose& pose, const std::string& field) {
   const Eigen::Matrix3d& r = pose.rotation;
   const double deviation = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
@@ -45,25 +35,17 @@ void check_points(const Scene& scene) {
   }
 }
 
-// The housing of the cameras' ports. Sets the names of the ports in `scene`.
-std::optional<io::Housing> housing_of(Scene& scene) {
-  io::Housing housing;
-  std::vector<refractive::Port<double>> ports;
-  for (SceneImage& image : scene.images) {
-    image.port_name.clear();
-    if (!image.calibrated || !image.camera.port) continue;
-    const auto same = std::ranges::find(ports, *image.camera.port);
-    image.port_name = fmt::format("port_{}", same - ports.begin() + 1);
-    housing.images[image.path] = image.port_name;
-    if (same != ports.end()) continue;
-    housing.ports[image.port_name] = io::to_housing_port(*image.camera.port);
-    ports.push_back(*image.camera.port);
-  }
-  if (ports.empty()) return {};
-  return housing;
-}
-
 }  // namespace
+
+void check_camera(const CameraModel& camera, const std::string& field) {
+  require_above_zero(camera.width, field + ".width");
+  require_above_zero(camera.height, field + ".height");
+  require_above_zero(camera.lens.fx, field + ".lens.fx");
+  require_above_zero(camera.lens.fy, field + ".lens.fy");
+  if (!std::isfinite(camera.lens.cx) || !std::isfinite(camera.lens.cy))
+    fail("{}.lens has the principal point {} {}", field, camera.lens.cx, camera.lens.cy);
+  if (camera.port) io::check_port(*camera.port, field + ".port");
+}
 
 void check(const MemorySurvey& survey) {
   if (!survey.read) fail("read: is empty, so that no photograph can be read");
@@ -80,6 +62,23 @@ void check(const MemorySurvey& survey) {
     check_pose(images[i].pose, field + ".pose");
   }
   check_points(survey.scene);
+}
+
+std::optional<io::Housing> housing_of(Scene& scene) {
+  io::Housing housing;
+  std::vector<refractive::Port<double>> ports;
+  for (SceneImage& image : scene.images) {
+    image.port_name.clear();
+    if (!image.calibrated || !image.camera.port) continue;
+    const auto same = std::ranges::find(ports, *image.camera.port);
+    image.port_name = fmt::format("port_{}", same - ports.begin() + 1);
+    housing.images[image.path] = image.port_name;
+    if (same != ports.end()) continue;
+    housing.ports[image.port_name] = io::to_housing_port(*image.camera.port);
+    ports.push_back(*image.camera.port);
+  }
+  if (ports.empty()) return {};
+  return housing;
 }
 
 io::SceneWithCameras scene_of(const MemorySurvey& survey) {

@@ -2,13 +2,24 @@
 // A survey in memory (axial/survey.h) in the form of a survey of files.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "io/openmvs/scene_with_cameras.h"
 #include "survey/survey.h"
 
 namespace axial::survey {
 
-// Returns the scene in its local frame. Its housing has the ports of the cameras, named "port_1",
-// "port_2" and so on. Error as for check().
+// Error that names `field`, the value and its name, as in "images[3].camera.width 0: ...", if a
+// size or a focal length is not above 0, a number is not finite, or the port is not possible
+// (io::check_port). The distortion is not checked.
+void check_camera(const CameraModel& camera, const std::string& field);
+
+// Returns the housing of the ports of the calibrated cameras, which are named "port_1", "port_2"
+// and so on; nothing if no camera has a port. Sets SceneImage::port_name in `scene`.
+std::optional<io::Housing> housing_of(Scene& scene);
+
+// Returns the scene in its local frame, with its housing_of(). Error as for check().
 io::SceneWithCameras scene_of(const MemorySurvey& survey);
 
 // The header of the photograph of an image.

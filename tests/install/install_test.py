@@ -93,8 +93,17 @@ class Installed(Case):
         self.assertEqual(output_of(build / "count_points", cloud), "2\n")
         self.assertRegex(output_of(build / "use_mesh"),
                          r"^mesh: 8 faces\nmap: 20 columns\ncompare: 0 changes\nrefine: .+\ntexture: .+\n$")
+        self.check_python(prefix)
         self.check_densify(prefix / "bin", build / "densify_scene")
         self.check_memory(build / "densify_memory")
+
+    def check_python(self, prefix):
+        """The Python package finds all that it needs in its folder."""
+        folder = prefix / "lib/python3/dist-packages"
+        said = output_of("env", f"PYTHONPATH={folder}", "/usr/bin/python3", "-B", "-c",
+                         "import axialmvs; print(axialmvs.Lens(9, 9, 4, 3), axialmvs.__file__)")
+        self.assertEqual(said, f"Lens(9, 9, 4, 3) {folder}/axialmvs/__init__.py\n")
+        self.assertTrue((folder / "axialmvs/py.typed").exists())
 
     def check_densify(self, programs, densify):
         """Runs a survey under water by the library: with progress, stopped, continued, and with a refused option."""
@@ -162,9 +171,15 @@ class DebianPackage(Case):
             self.assertIn(needed, depends)
         root = self.folder / "root"
         output_of("dpkg-deb", "--extract", package, root)
+        self.assertEqual(list(root.rglob("axialmvs/__init__.py")), [])
         self.check_programs(root / "usr")
         for program in PROGRAMS:
             self.assertNotIn("not found", output_of("ldd", root / "usr/bin" / program))
+        package, = self.folder.glob("python3-axialmvs_*.deb")
+        self.assertIn("python3-numpy", output_of("dpkg-deb", "--field", package, "Depends"))
+        names = output_of("dpkg-deb", "--contents", package)
+        self.assertIn("./usr/lib/python3/dist-packages/axialmvs/__init__.py", names)
+        self.assertNotIn("./usr/bin", names)
 
 
 if __name__ == "__main__":

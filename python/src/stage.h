@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs a stage for Python: with progress, lines for Python's logging, and a stop.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <cstdint>
+#include <functional>
+
+#include "axial/base.h"
+#include "src/keywords.h"
+
+namespace axial::python {
+
+// The keywords that all stages have.
+struct StageControls {
+  py::object progress = py::none();  // a function of title, done and total
+  std::uint64_t max_memory = 0;      // [MB]; 0: 70 % of the free memory
+  unsigned max_threads = 0;          // 0: as many as cores
+
+  void add_to(Keywords& keywords);
+};
+
+// Calls `work` in a thread of its own and returns when it has ended. In the meantime, the thread of
+// the caller calls `progress` and writes the lines of the stage to Python's logger "axialmvs".
+//
+// A signal (KeyboardInterrupt), an exception of `progress` and the result False of `progress`
+// request a stop of the stage. After the stage has ended, the exception is passed on. Stopped is
+// thrown if the work was left undone because of False. Other exceptions of `work` are passed on.
+//
+// `work` runs without Python's lock. It takes the lock to call Python.
+void run_stage(const StageControls& controls, const std::function<void(const Context&)>& work);
+
+}  // namespace axial::python
