@@ -29,19 +29,19 @@ constexpr double kLeastRelativeGain = 1e-8;
 // the scale.
 constexpr double kLongestSteps = 1e10;
 
-// A point whose observations are all outliers moves by short steps of equal lengths. Such steps may
-// take all iterations, but they hardly change the cost. A step of 0.14 standard deviations gains
-// this part of half the cost.
-constexpr double kGainOfOutliers = 0.01;
+// What an iteration must gain at least, of half the cost.
+struct LeastGain {
+  double with_little_damping = 0;
+  double with_least_damping = 0;
+};
 
-// Reports the iterations. Ends the adjustment when an iteration with little damping gains less than
-// `least_gain`, or less than kLeastRelativeGain of the cost, or with the least damping less than
-// kGainOfOutliers. The gain of a strongly damped step tells nothing about the distance to the
-// minimum.
+// Reports the iterations. Ends the adjustment when an iteration gains less than `least`, or with
+// little damping less than kLeastRelativeGain of the cost. The gain of a strongly damped step tells
+// nothing about the distance to the minimum.
 class Iterations : public ceres::IterationCallback {
  public:
-  Iterations(const AdjustSink& sink, const Context& context, double least_gain)
-      : sink_(sink), context_(context), least_gain_(least_gain) {}
+  Iterations(const AdjustSink& sink, const Context& context, const LeastGain& least)
+      : sink_(sink), context_(context), least_(least) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
     if (context_.stop_requested()) return ceres::SOLVER_ABORT;
@@ -52,19 +52,19 @@ class Iterations : public ceres::IterationCallback {
 
  private:
   bool has_arrived(const ceres::IterationSummary& iteration) const {
-    const double least = std::max(least_gain_, kLeastRelativeGain * iteration.cost);
+    const double least = std::max(least_.with_little_damping, kLeastRelativeGain * iteration.cost);
     // A step that is rejected although it hardly changes the cost is too short to lower it.
     if (!iteration.step_is_successful)
       return iteration.step_is_valid &&
              std::abs(iteration.cost_change) < kLeastRelativeGain * iteration.cost;
     const double radius = iteration.trust_region_radius;
     return (iteration.cost_change < least && radius > kLongSteps / 1000) ||
-           (iteration.cost_change < kGainOfOutliers && radius >= kLongestSteps);
+           (iteration.cost_change < least_.with_least_damping && radius >= kLongestSteps);
   }
 
   const AdjustSink& sink_;
   const Context& context_;
-  double least_gain_;
+  LeastGain least_;
 };
 
 ceres::Solver::Options solver_options(AdjustProblem& adjusted, int max_iterations) {
@@ -89,9 +89,11 @@ ceres::Solver::Options solver_options(AdjustProblem& adjusted, int max_iteration
   return options;
 }
 
+// Outliers may take all iterations (AdjustOptions::gain_of_outliers).
 bool has_converged(const ceres::Solver::Summary& summary) {
+  constexpr double kLeastGain = 0.01;  // a step of 0.14 standard deviations
   return summary.termination_type != ceres::NO_CONVERGENCE ||
-         summary.iterations.back().cost_change < kGainOfOutliers;
+         summary.iterations.back().cost_change < kLeastGain;
 }
 
 }  // namespace
@@ -123,7 +125,9 @@ AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSi
   ceres::Solver::Options solver = solver_options(adjusted, options.max_iterations);
   const bool many = !options.poses_known && adjusted.pose_count() >= options.many_images;
   if (many) solver.initial_trust_region_radius = kLongSteps;
-  Iterations iterations(sink, context, many ? options.least_gain : 0);
+  Iterations iterations(
+      sink, context,
+      many ? LeastGain{options.least_gain, 0} : LeastGain{0, options.gain_of_outliers});
   solver.callbacks.push_back(&iterations);
   ceres::Solver::Summary summary;
   FLAGS_minloglevel = google::GLOG_FATAL;  // the Error below states a failure in one line

@@ -452,6 +452,7 @@ TEST(Adjust, FindsTheSameMinimumOfManyImages) {
   Bundle few = truth, many = truth;
   disturb(few, 0.5 * kDegree, 0.01, 3);
   disturb(many, 0.5 * kDegree, 0.01, 3);
+  options.gain_of_outliers = 0;
   const AdjustReport usual = adjust(few, options);
   const double sigma = uncertainty(few, options).scale_sigma;
   options.many_images = 0;
@@ -461,6 +462,29 @@ TEST(Adjust, FindsTheSameMinimumOfManyImages) {
   EXPECT_NEAR(report.final_cost, usual.final_cost, 2e-4);
   EXPECT_NEAR(pose_errors(many, few).scale, 1, 0.02 * sigma);
   EXPECT_LT(pose_errors(many, few).centre_rms, 0.02 * pose_errors(few, truth).centre_rms);
+}
+
+// Points with wrong observations alone must not take all iterations, and the cameras are the same
+// up to a small part of their errors.
+TEST(Adjust, EndsWhereOnlyOutliersMove) {
+  const Bundle truth = survey(camera_behind(flat_port(3)), {.noise = 0.5});
+  Bundle early = truth;
+  std::mt19937 draw(5);
+  std::uniform_real_distribution<double> wrong(-60, 60);
+  for (Observation& observation : early.observations)
+    if (observation.point % 8 == 0) observation.pixel += Eigen::Vector2d(wrong(draw), wrong(draw));
+  disturb(early, 0.5 * kDegree, 0.01, 3);
+  Bundle late = early;
+  AdjustOptions options;
+  options.pixel_sigma = 0.5;
+  const AdjustReport ends_early = adjust(early, options);
+  options.gain_of_outliers = 0;
+  const AdjustReport ends_late = adjust(late, options);
+  EXPECT_TRUE(ends_early.converged);
+  EXPECT_LT(ends_early.iterations, ends_late.iterations);
+  EXPECT_NEAR(ends_early.final_cost, ends_late.final_cost,
+              0.01 * (ends_late.iterations - ends_early.iterations));
+  EXPECT_LT(pose_errors(early, late).centre_rms, 0.05 * pose_errors(late, truth).centre_rms);
 }
 
 TEST(Adjust, ReportsEveryIteration) {
