@@ -34,8 +34,8 @@ void declare(OptionList& list, Options& options) {
            "places of these targets: of RefinePoses, or control points (default: "
            "target_places.json in the folder of the mesh or in refined/ there)")
       .add("boundary-map", &options.map,
-           "map of MapSurface that states the axes and the coordinate reference system in which "
-           "the boundary is meant");
+           "map of MapSurface, or .change.json of CompareSurveys, that states the axes and the "
+           "coordinate reference system in which the boundary is meant");
 }
 
 void declare_like(OptionList& list, Options& options) {

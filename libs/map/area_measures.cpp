@@ -122,7 +122,7 @@ struct AreaSums {
     // noise of what a further noise t adds is in proportion to sqrt(s^2 + t^2) - s. It is what the
     // noise s adds to the true surface if t = sqrt(3) s.
     static const double kNoisyHeight = std::sqrt(3);
-    if (!is_line_on_map(piece))
+    if (!is_narrow(piece, {1, 1, 0}))
       for (const Eigen::Vector3d& corner : piece) {
         lowest = std::min(lowest, corner.z());
         highest = std::max(highest, corner.z());

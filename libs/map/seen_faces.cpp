@@ -95,12 +95,11 @@ void cut(Points&& piece, const SeenFaces::Hidden& hidden, std::vector<Points>& p
     std::swap(rest, part);
     if (rest.size() < kLeast) return parts.push_back(std::move(piece));
   }
-  const bool all = is_line_on_map(piece);
   rest = std::move(piece);
   for (const HalfSpace& half : hidden) {
     geometry::convex_part(
         rest, [&](const Eigen::Vector3d& x) { return -half(x); }, part);
-    if (part.size() >= kLeast && (all || !is_line_on_map(part))) parts.push_back(part);
+    if (part.size() >= kLeast && !is_narrow(part)) parts.push_back(part);
     geometry::convex_part(rest, half, part);
     std::swap(rest, part);
   }
@@ -108,13 +107,16 @@ void cut(Points&& piece, const SeenFaces::Hidden& hidden, std::vector<Points>& p
 
 }  // namespace
 
-bool is_line_on_map(std::span<const Eigen::Vector3d> piece) {
+bool is_narrow(std::span<const Eigen::Vector3d> piece, const Eigen::Vector3d& along) {
   constexpr double kWidth = 1e-7;  // [m]
   double twice = 0, length = 0;
-  for (std::size_t k = 2; k < piece.size(); ++k)
-    twice += std::abs((piece[k - 1] - piece[0]).cross(piece[k] - piece[0]).z());
-  for (const Eigen::Vector3d& corner : piece)
-    length = std::max(length, (corner - piece[0]).head<2>().norm());
+  Eigen::Vector3d before = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& corner : piece) {
+    const Eigen::Vector3d from_first = along.cwiseProduct(corner - piece[0]);
+    twice += before.cross(from_first).norm();
+    length = std::max(length, from_first.norm());
+    before = from_first;
+  }
   return twice <= kWidth * length;
 }
 

@@ -54,12 +54,13 @@ class SeenFaces {
   FaceBins bins_;
 };
 
-// Whether a convex polygon in a plane is narrower than 1e-7 m on the map. A vertical polygon is.
-bool is_line_on_map(std::span<const Eigen::Vector3d> piece);
+// Whether a convex polygon in a plane is narrower than 1e-7 m. `along`: the factors of its
+// coordinates; (1, 1, 0) for its picture on the map, where a vertical polygon is narrow.
+bool is_narrow(std::span<const Eigen::Vector3d> piece,
+               const Eigen::Vector3d& along = Eigen::Vector3d::Ones());
 
 // Calls `use` for the parts of a convex polygon in a plane that are not `hidden`, which are convex
-// and keep its direction. Parts that are lines on the map are left out, except those of a polygon
-// that is a line itself.
+// and keep its direction. Narrow parts are left out.
 void for_seen_parts(std::span<const Eigen::Vector3d> piece,
                     std::span<const SeenFaces::Hidden> hidden,
                     const std::function<void(std::span<const Eigen::Vector3d>)>& use);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "pose/adjust_problem.h"
@@ -37,7 +38,8 @@ struct LeastGain {
 
 // Reports the iterations. Ends the adjustment when an iteration gains less than `least`, or with
 // little damping less than kLeastRelativeGain of the cost. The gain of a strongly damped step tells
-// nothing about the distance to the minimum.
+// nothing about the distance to the minimum. With the least damping, two iterations in a row must
+// gain less.
 class Iterations : public ceres::IterationCallback {
  public:
   Iterations(const AdjustSink& sink, const Context& context, const LeastGain& least)
@@ -51,20 +53,23 @@ class Iterations : public ceres::IterationCallback {
   }
 
  private:
-  bool has_arrived(const ceres::IterationSummary& iteration) const {
+  bool has_arrived(const ceres::IterationSummary& iteration) {
     const double least = std::max(least_.with_little_damping, kLeastRelativeGain * iteration.cost);
     // A step that is rejected although it hardly changes the cost is too short to lower it.
     if (!iteration.step_is_successful)
       return iteration.step_is_valid &&
              std::abs(iteration.cost_change) < kLeastRelativeGain * iteration.cost;
     const double radius = iteration.trust_region_radius;
+    const bool gains_little =
+        iteration.cost_change < least_.with_least_damping && radius >= kLongestSteps;
     return (iteration.cost_change < least && radius > kLongSteps / 1000) ||
-           (iteration.cost_change < least_.with_least_damping && radius >= kLongestSteps);
+           (gains_little && std::exchange(gained_little_, gains_little));
   }
 
   const AdjustSink& sink_;
   const Context& context_;
   LeastGain least_;
+  bool gained_little_ = false;  // of the iteration before
 };
 
 ceres::Solver::Options solver_options(AdjustProblem& adjusted, int max_iterations) {
@@ -90,10 +95,9 @@ ceres::Solver::Options solver_options(AdjustProblem& adjusted, int max_iteration
 }
 
 // Outliers may take all iterations (AdjustOptions::gain_of_outliers).
-bool has_converged(const ceres::Solver::Summary& summary) {
-  constexpr double kLeastGain = 0.01;  // a step of 0.14 standard deviations
+bool has_converged(const ceres::Solver::Summary& summary, double gain_of_outliers) {
   return summary.termination_type != ceres::NO_CONVERGENCE ||
-         summary.iterations.back().cost_change < kLeastGain;
+         summary.iterations.back().cost_change < gain_of_outliers;
 }
 
 }  // namespace
@@ -135,8 +139,8 @@ AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSi
   context.check_stop();
   if (!summary.IsSolutionUsable()) fail("bundle adjustment: {}", summary.message);
   adjusted.write_back(bundle);
-  return {has_converged(summary), static_cast<int>(summary.iterations.size()), summary.initial_cost,
-          summary.final_cost};
+  return {has_converged(summary, options.gain_of_outliers),
+          static_cast<int>(summary.iterations.size()), summary.initial_cost, summary.final_cost};
 }
 
 }  // namespace axial::pose

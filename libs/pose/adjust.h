@@ -112,9 +112,10 @@ struct AdjustOptions : Unknowns {
   // corresponds to a step of 0.014 standard deviations.
   std::size_t many_images = 500;
   double least_gain = 1e-4;
-  // With fewer poses, adjust() ends when an iteration with the least damping lowers half the cost
-  // by less than this, 0.14 standard deviations. A point whose observations are all outliers moves
-  // by short steps of equal lengths, which hardly change the cost, but may take all iterations.
+  // Otherwise adjust() ends when two iterations in a row, with the least damping, each lower half
+  // the cost by less than this: steps of 0.14 standard deviations. A point whose observations are
+  // all outliers moves by short steps of equal lengths, which hardly change the cost, but may take
+  // all iterations. 0: adjust() goes on.
   double gain_of_outliers = 0.01;
 };
 

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <string>
@@ -38,6 +39,10 @@ void require_shape(const py::array& array, const char* name, const Shape& wanted
 // (`whole`: of whole numbers) that all are of the type `kind` without loss of their kind.
 py::array numbers(const py::object& value, const char* name, bool whole);
 
+// Throws a ValueError unless all numbers of `array` are from `low` to `high`.
+void require_range(const py::array& array, const char* name, const py::int_& low,
+                   const py::int_& high);
+
 // The argument `name` as an array of T with the shape `wanted`. Real numbers may be of any type,
 // and become T. Whole numbers must be of a type of whole numbers. Throws a TypeError or a
 // ValueError.
@@ -45,6 +50,9 @@ template <class T>
 Array<T> array_argument(const py::object& value, const char* name, const Shape& wanted) {
   const py::array given = numbers(value, name, std::is_integral_v<T>);
   require_shape(given, name, wanted);
+  if constexpr (std::is_integral_v<T>)
+    require_range(given, name, py::int_(std::numeric_limits<T>::min()),
+                  py::int_(std::numeric_limits<T>::max()));
   return Array<T>(given);
 }
 

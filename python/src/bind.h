@@ -4,9 +4,14 @@
 
 #include <pybind11/pybind11.h>
 
+#include <string>
+
 namespace axial::python {
 
 namespace py = pybind11;
+
+// A text with names of files, whose bytes need not be UTF-8.
+py::str text_of_file_system(const std::string& text);
 
 void bind_errors(py::module_& module);        // Error and Stopped
 void bind_ports(py::module_& module);         // FlatPort, DomePort and Lens

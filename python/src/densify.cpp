@@ -66,6 +66,10 @@ py::dict run(const py::object& scene, const py::object& photographs, const py::o
       .add("working_folder", options.survey.files.working_folder);
   known.take(keywords, "densify");
   use_given_masks(keywords, options.survey);
+  if (call.in_memory()) refuse_in_memory(keywords, {"errors"});
+  // As for DensifyPointCloud: who states a number wants it for all points.
+  if (keywords.contains("min_views") && !keywords.contains("two_if_undisputed"))
+    options.fusion.two_if_undisputed = false;
   if (!options.output.scene.empty()) options.output.scene.replace_extension(".mvs");
   options.output.take_map = map_sink(take_map);
   return call.in_memory() ? densify_memory(call, options, controls)

@@ -18,7 +18,7 @@ void add_views(Keywords& keywords, densify::ViewOptions& options) {
       .add("region", options.region,
            {{"off", RegionMode::off}, {"on", RegionMode::on}, {"adaptive", RegionMode::adaptive}})
       .add("roi_border", options.roi_border, -1e6, 1e6)
-      .add("selection_optimal_angle", selection.optimal_angle, 1e-3, kHalfTurn)
+      .add("selection_optimal_angle", selection.optimal_angle, kHalfTurn / 1800, kHalfTurn)
       .add("selection_min_views", selection.min_views, 1, 1000)
       .add("selection_max_views", selection.max_views, 1, 1000)
       .add("selection_min_trusted_views", selection.min_trusted_views, 1, 1000)

@@ -25,10 +25,10 @@ std::string keyword(const std::string& setting) {
 // axialmvs.Error with the parts of `error`.
 void raise(const Error& error) {
   const py::object type = py::module_::import("axialmvs._axialmvs").attr("Error");
-  const std::string text = in_words(error.text(), keywords());
+  const py::str text = text_of_file_system(in_words(error.text(), keywords()));
   const py::object raised = type(text);
   raised.attr("text") = text;
-  raised.attr("file") = error.file().string();
+  raised.attr("file") = text_of_file_system(error.file().string());
   raised.attr("setting") = keyword(error.setting());
   PyErr_SetObject(type.ptr(), raised.ptr());
 }
@@ -42,6 +42,11 @@ void translate(std::exception_ptr thrown) {
 }
 
 }  // namespace
+
+py::str text_of_file_system(const std::string& text) {
+  return py::reinterpret_steal<py::str>(
+      PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
+}
 
 void bind_errors(py::module_& module) {
   const py::object type = py::exception<Error>(module, "Error", PyExc_RuntimeError);

@@ -23,6 +23,14 @@ Keywords& Keywords::add(const char* name, std::function<void(const py::handle&)>
   return *this;
 }
 
+Keywords& Keywords::add_zero_or(const char* name, int& field, int low, int high) {
+  return add(name, [=, &field](const py::handle& value) {
+    field = static_cast<int>(number(name, value, 0, high, true));
+    if (field != 0 && field < low)
+      fail("{} {}: must be 0, or from {} to {}", setting(name), field, low, high);
+  });
+}
+
 Keywords& Keywords::add(const char* name, bool& field) {
   return add(name, [=, &field](const py::handle& value) {
     if (!py::isinstance<py::bool_>(value)) refuse_type(name, value, "True or False");
@@ -38,15 +46,17 @@ Keywords& Keywords::add(const char* name, std::filesystem::path& field) {
       PyErr_Clear();
       refuse_type(name, value, "a path");
     }
-    field = std::filesystem::absolute(py::detail::cast_op<std::filesystem::path>(path));
+    field = py::detail::cast_op<std::filesystem::path>(path);
+    if (!field.empty()) field = std::filesystem::absolute(field);
   });
 }
 
 double Keywords::number(const char* name, const py::handle& value, double low, double high,
                         bool whole) {
   const char* wanted = whole ? "a whole number" : "a number";
-  const bool is_whole = PyIndex_Check(value.ptr()) && !py::isinstance<py::bool_>(value);
-  if (!is_whole && (whole || !PyFloat_Check(value.ptr()))) refuse_type(name, value, wanted);
+  const bool is_number = !py::isinstance<py::bool_>(value) &&
+                         (whole ? PyIndex_Check(value.ptr()) : PyNumber_Check(value.ptr()));
+  if (!is_number) refuse_type(name, value, wanted);
   const double number = PyFloat_AsDouble(value.ptr());
   if (PyErr_Occurred()) {
     PyErr_Clear();

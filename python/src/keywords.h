@@ -27,6 +27,8 @@ class Keywords {
       field = static_cast<T>(number(name, value, low, high, std::is_integral_v<T>));
     });
   }
+  // The same, but 0 is possible, too.
+  Keywords& add_zero_or(const char* name, int& field, int low, int high);
   Keywords& add(const char* name, bool& field);
   Keywords& add(const char* name, std::filesystem::path& field);  // becomes absolute; None: empty
 

@@ -74,6 +74,9 @@ py::dict reconstruct_mesh(const py::dict& cloud_fields, const py::dict& scene_fi
   known.add("close_unseen", reconstruction.close_unseen);
   controls.add_to(known);
   known.take(keywords, "reconstruct_mesh");
+  // As for ReconstructMesh, one size of pieces.
+  mesh::CleanOptions& clean = reconstruction.options.clean;
+  if (!keywords.contains("cut_off")) clean.cut_off = clean.spurious;
   const LocalFrame frame = frame_of(scene_fields);
   const Scene scene = to_scene(scene_fields);
   PointCloud cloud = cloud_in(frame, cloud_fields);

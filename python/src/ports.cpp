@@ -44,7 +44,8 @@ void bind_flat_port(py::module_& module) {
       .def_readonly("n_glass", &Port::n_glass)
       .def_readonly("n_water", &Port::n_water)
       .def_property_readonly("normal", [](const Port& port) { return to_array(port.normal); })
-      .def("__eq__", [](const Port& a, const Port& b) { return a == b; })
+      .def(
+          "__eq__", [](const Port& a, const Port& b) { return a == b; }, py::is_operator())
       .def("__repr__", [](const Port& port) { return text_of(port); });
 }
 
@@ -60,7 +61,8 @@ void bind_dome_port(py::module_& module) {
       .def_readonly("n_glass", &Port::n_glass)
       .def_readonly("n_water", &Port::n_water)
       .def_property_readonly("centre", [](const Port& port) { return to_array(port.centre); })
-      .def("__eq__", [](const Port& a, const Port& b) { return a == b; })
+      .def(
+          "__eq__", [](const Port& a, const Port& b) { return a == b; }, py::is_operator())
       .def("__repr__", [](const Port& port) { return text_of(port); });
 }
 

@@ -92,6 +92,10 @@ PointCloud to_cloud(const py::dict& fields) {
   cloud.confidences = items_of<float>(fields, "confidences");
   check_views(cloud.view_begin, cloud.size(), cloud.view_images.size());
   check_count("view_weights", cloud.view_weights.size(), cloud.view_images.size());
+  check_count("normals", cloud.normals.size(), cloud.size());
+  check_count("colors", cloud.colors.size(), cloud.size());
+  check_count("errors", cloud.errors.size(), cloud.size());
+  check_count("confidences", cloud.confidences.size(), cloud.size());
   return cloud;
 }
 

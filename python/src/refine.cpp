@@ -25,6 +25,7 @@ struct Refinement {
 
   Refinement() {
     survey.resolution = {0, 640, 1 << 16};
+    survey.compares_photographs = true;
     cleaning.spurious = 0;
     cleaning.spikes = false;
   }
@@ -46,6 +47,7 @@ struct Refinement {
     };
     refine::refine(mesh, survey::posed_cameras(scene), picture, settings,
                    Context(context, shares.for_work));
+    scene.photograph_check->report(context);
     mesh = mesh::clean(mesh, cleaning);
   }
 };
@@ -79,7 +81,9 @@ py::dict refine_mesh(const py::dict& fields, const py::object& scene, const py::
   known.take(keywords, "refine_mesh");
   use_given_masks(keywords, refinement.survey);
   if (call.in_memory()) {
+    refuse_in_memory(keywords);
     refinement.survey.files.scene = "survey in memory";  // for messages
+    refinement.survey.has_masks = false;                 // in files
     refinement.survey.memory_survey =
         std::make_shared<const survey::MemorySurvey>(memory_survey(call));
   } else {

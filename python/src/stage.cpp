@@ -10,6 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "src/bind.h"
+
 namespace axial::python {
 namespace {
 
@@ -57,11 +59,11 @@ const char* method_of(LogLevel level) {
 bool deliver(const Event& event, const py::object& progress) {
   if (event.kind == Event::Kind::line) {
     const py::object logger = py::module_::import("logging").attr("getLogger")("axialmvs");
-    logger.attr(method_of(event.level))("%s", event.text);
+    logger.attr(method_of(event.level))("%s", text_of_file_system(event.text));
     return true;
   }
   if (progress.is_none()) return true;
-  const py::object answer = progress(event.text, event.done, event.total);
+  const py::object answer = progress(text_of_file_system(event.text), event.done, event.total);
   return answer.ptr() != Py_False;
 }
 
@@ -130,8 +132,19 @@ void run_stage(const StageControls& controls, const std::function<void(const Con
     }
     queue.close();
   });
-  const std::optional<py::error_already_set> raised = attend(queue, controls.progress, stop);
-  worker.join();
+  std::optional<py::error_already_set> raised;
+  std::exception_ptr of_attending;
+  try {
+    raised = attend(queue, controls.progress, stop);
+  } catch (...) {
+    of_attending = std::current_exception();
+    stop.request_stop();
+  }
+  {
+    const py::gil_scoped_release unlocked;  // the stage may still call functions of Python
+    worker.join();
+  }
+  if (of_attending) std::rethrow_exception(of_attending);
   if (raised) throw py::error_already_set(*raised);
   if (failure) std::rethrow_exception(failure);
 }

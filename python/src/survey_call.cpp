@@ -5,6 +5,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "base/error.h"
 #include "scene/local_frame.h"
 #include "src/records.h"
 
@@ -52,10 +53,18 @@ void add_survey_keywords(Keywords& keywords, survey::Options& options) {
       .add("ignore_mask_label", options.ignore_mask_label, -1, 65535)
       .add("color_folder", options.color_folder)
       .add("match_colors", options.match_colors)
-      .add("bit_depth", options.bit_depth, 0, 16)
+      .add_zero_or("bit_depth", options.bit_depth, 8, 16)
       .add("resolution_level", options.resolution.level, 0, 16)
       .add("resolution_min", options.resolution.min, 1, 1 << 16)
       .add("resolution_max", options.resolution.max, 16, 1 << 16);
+}
+
+void refuse_in_memory(const py::dict& keywords, std::initializer_list<const char*> more) {
+  std::vector<const char*> names{"housing", "ports", "allow_missing", "mask_folder",
+                                 "ignore_mask_label"};
+  names.insert(names.end(), more.begin(), more.end());
+  for (const char* name : names)
+    if (keywords.contains(name)) fail("{}: is only for a scene in a file", setting(name));
 }
 
 void use_given_masks(const py::dict& keywords, survey::Options& options) {

@@ -2,6 +2,8 @@
 // The survey that a call of Python passes to a stage: files, or a scene in memory.
 #pragma once
 
+#include <initializer_list>
+
 #include "axial/survey.h"
 #include "src/keywords.h"
 
@@ -23,6 +25,10 @@ void take_files(const SurveyCall& call, survey::Options& options);
 
 // Adds the keywords of the survey, except the paths of the scene.
 void add_survey_keywords(Keywords& keywords, survey::Options& options);
+
+// Throws an Error that names the first of the keywords that a scene in memory does not have: those
+// of the files of a scene, and `more`.
+void refuse_in_memory(const py::dict& keywords, std::initializer_list<const char*> more = {});
 
 // As for the programs: a folder of masks is given to be used, with the label 0.
 void use_given_masks(const py::dict& keywords, survey::Options& options);

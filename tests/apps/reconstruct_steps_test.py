@@ -268,10 +268,9 @@ class WithStandIns(StandIns):
         given = {"las": True, "epsg": 32617, "until": "page", "earlier": "old/mesh.ply"}
         commands = {step.name: " ".join(step.command) for step in reconstruct_steps.steps(
             options_of(**given), self.folder / "out")}
-        for name in ("compare", "las"):
+        for name in ("map", "compare", "las"):
             self.assertIn("--epsg 32617", commands[name])
-        self.assertIn(f"--like {self.folder}/out/scene.change.json", commands["map"])
-        self.assertNotIn("--epsg", commands["map"])
+            self.assertNotIn("--like", commands[name])
         own = {step.name: " ".join(step.command) for step in reconstruct_steps.steps(
             options_of(**given, map="--epsg 1"), self.folder / "out")}
         self.assertTrue(own["map"].endswith("--epsg 1") and "32617" not in own["map"], own["map"])
@@ -392,25 +391,29 @@ class WithStandIns(StandIns):
         return self.command_of("CompareSurveys")
 
     def test_maps_lie_in_the_coordinates_of_the_earlier_survey(self):
-        self.write("before/scene_dense_mesh.ply", "")
+        mesh = self.write("before/scene_dense_mesh.ply", "")
         heights, ortho = (self.folder / "before" / f"scene_map.{kind}.tif" for kind in ("dem", "ortho"))
         out, options = self.folder / "out", ["--earlier", "before"]
         self.succeeds(*options)
         self.assertIn(f" --like {out}/scene.change.json", self.command_of("MapSurface"))
         self.assertNotIn("--like", self.command_of("CompareSurveys"))
-        page = lambda: next(" ".join(step.command) for step in reconstruct_steps.steps(options_of(
-            until="page", earlier=str(self.folder / "before" / "scene_dense_mesh.ply")), out) if step.name == "page")
+        page = lambda **given: next(" ".join(step.command) for step in reconstruct_steps.steps(options_of(
+            until="page", earlier=str(mesh), **given), out) if step.name == "page")
         self.assertNotIn("--earlier-map", page())
         heights.write_text("")
         ortho.write_text("")
         self.succeeds(*options)
         self.assertIn(f" --like {heights}", self.command_of("CompareSurveys"))
-        self.assertIn(f" --earlier-map {self.folder}/before/scene_map", page())
+        for given in ({}, {"epsg": 32617}, {"compare": "--boundary plot.geojson"}):
+            self.assertIn(f" --earlier-map {self.folder}/before/scene_map", page(**given))
+        self.assertNotIn("--earlier-map", page(compare="--up 0,0,1"))
         heights.write_text("other")
         self.assertEqual(self.done_before(*options), 10)
         self.succeeds(*options, "--map=--up 0,0,1", "--compare=--up 0,0,1")
         for program in ("CompareSurveys", "MapSurface"):
             self.assertNotIn("--like", self.command_of(program))
+        os.utime(mesh, (heights.stat().st_mtime + 9,) * 2)  # of another run than the map
+        self.assertNotIn("--earlier-map", page())
 
     def test_another_scene_of_the_earlier_survey_is_compared_again(self):
         self.write("before/scene_dense_mesh.ply", "")

@@ -194,6 +194,8 @@ class Files(unittest.TestCase):
         axialmvs.write_housing(self.folder / "h.json", housing)
         found = axialmvs.read_housing(self.folder / "h.json")
         self.assertEqual(found.ports["side"], dome)
+        self.assertNotEqual(found.ports["main"], dome)
+        self.assertNotEqual(dome, None)
         np.testing.assert_allclose(found.ports["main"].normal, flat.normal, rtol=0, atol=1e-15)
         self.assertEqual([found.port_of(name) for name in ("a.jpg", "x/b.jpg", "c.jpg")], ["main", "side", "none"])
         self.assertEqual(found.carried_port("side"), dome)

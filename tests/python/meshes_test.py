@@ -61,6 +61,11 @@ class Meshes(InFolder):
         self.assertEqual(raised.exception.setting, "decimate")
         with self.assertRaisesRegex(axialmvs.Error, "views"):
             axialmvs.reconstruct_mesh(axialmvs.PointCloud(np.zeros((1, 3))), small_dive.scene())
+        with self.assertRaisesRegex(ValueError, "normals: has 1 items, but must have 2"):
+            axialmvs.reconstruct_mesh(axialmvs.PointCloud(np.zeros((2, 3)), normals=np.zeros((1, 3))),
+                                      small_dive.scene())
+        with self.assertRaisesRegex(ValueError, "faces: has the number -1"):
+            axialmvs.clean_mesh(axialmvs.Mesh(np.zeros((3, 3)), np.array([[0, 1, -1]])))
         with self.assertRaises(axialmvs.Error):
             axialmvs.clean_mesh(axialmvs.Mesh(np.zeros((1, 3)), np.array([[0, 1, 2]])))
 

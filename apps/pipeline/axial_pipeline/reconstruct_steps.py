@@ -3,8 +3,8 @@
 
 import pathlib
 
-from . import (boundary, cameras, colmap, control, database, features, left_out, lenses, masks, matching, poses,
-               positions, start_lens, still_features, turns, video)
+from . import (boundary, cameras, colmap, control, database, features, left_out, lenses, map_places, masks, matching,
+               poses, positions, start_lens, still_features, turns, video)
 from .option_files import find_option, has_option, read_by, without_options
 from .programs import Programs, words_of
 from .reconstruct_options import keeps_depth_maps, wanted_steps
@@ -16,8 +16,6 @@ from .steps import Files, Report, Step, Tiles
 RUN_FILE = "run.json"
 RESTORED = "restored"  # the folder of the photographs without water
 REFRACTIVE = ("--refractive", 1)
-CHANGE = "scene.change.json"
-PLACES = ("--up", "--epsg", "--like", "--boundary-map")  # options for the axes of a map
 
 
 def meshes(out):
@@ -282,27 +280,6 @@ def words_about_registration(run, words):
     return [("--align", "auto"), *zip(("--targets", "--other-targets"), places)], places
 
 
-def earlier_map(given):
-    """The map of the survey of --earlier, without the ends of the names of its files."""
-    return pathlib.Path(given.earlier).parent / "scene_map"
-
-
-def orthomosaic(prefix):
-    return prefix.with_name(f"{prefix.name}.ortho.tif")
-
-
-def words_about_earlier_map(run):
-    """The option of CompareSurveys for the axes of the map of the earlier survey, if it has one and nothing else says
-    which axes to take."""
-    heights = pathlib.Path(f"{earlier_map(run.given)}.dem.tif")
-    is_free = not run.given.epsg and not any(has_option(run.words("compare"), option) for option in PLACES)
-    return ["--like", heights] if is_free and heights.exists() else []
-
-
-def shows_earlier_map(run, wanted):
-    return "compare" in wanted and bool(words_about_earlier_map(run)) and orthomosaic(earlier_map(run.given)).exists()
-
-
 def words_about_surveys(words, known, earlier, scene):
     """The options of CompareSurveys that the user did not give among `words`: those that are `known`, and the
     scenes of both surveys if the earlier one has one beside its mesh."""
@@ -320,7 +297,7 @@ def words_about_results(run, wanted):
                             *([("--map", out / "scene_map")] if "map" in wanted else []),
                             *([("--raw-map", out / "scene_map_raw")] if "raw-map" in wanted else []),
                             *([("--change", out / "scene")] if "compare" in wanted else []),
-                            *([("--earlier-map", earlier_map(run.given))] if shows_earlier_map(run, wanted) else []),
+                            *map_places.of_page(run.given, out, run.words("compare"))[0],
                             *([("--depth-maps", out)] if kept_maps else []),
                             *([("--colors", out / RESTORED)] if "colors" in wanted else [])], run.own("page"))
 
@@ -343,14 +320,15 @@ def map_step(run, name, mesh, output, *options):
     words = run.words("map")
     if name == "raw-map":
         words = without_options(words, ("--colors",))
-    is_like_change = "compare" in wanted_steps(run.given) and not any(has_option(words, one) for one in PLACES)
-    place = ["--like", run.out / CHANGE] if is_like_change else run.system(words)
+    has_comparison = "compare" in wanted_steps(run.given)
+    like = map_places.of_map(run.given, run.out, words) if has_comparison else []
     command = run.programs.map_surface(run.scene, mesh, output, *REFRACTIVE,
-                                       *mask_words(run.words("texture"), words), *options, *place,
+                                       *mask_words(run.words("texture"), words), *options,
+                                       *(like or run.system(words)),
                                        *boundary.not_given_again(boundary.options(run.given, run.out), words), *words)
     made = [output.with_name(f"{output.name}.{kind}.tif") for kind in ("dem", "ortho", "views")]
     also = [*read_by(command, run.own("texture")), *(read_by(command, run.own("map")) if name != "map" else []),
-            *(place[1:] if is_like_change else [])]
+            *like[1:]]
     return run.step(name, command, Files(*made), also=[*also, *boundary.files_of(run.given, run.out)],
                     anew=run.made_before(name))  # not every command writes all of them again
 
@@ -367,27 +345,25 @@ def map_steps(run, wanted):
 
 
 def survey_steps(run, wanted):
-    """The steps from the mesh to the comparison with an earlier survey, to maps, which then lie in the coordinates of
-    the earlier survey, and to the page."""
+    """The steps from the mesh to the comparison with an earlier survey, to maps, and to the page."""
     given, out, programs = run.given, run.out, run.programs
     if "compare" in wanted:
         earlier, words = pathlib.Path(given.earlier).with_name(run.scene.name), run.words("compare")
         registration, places = words_about_registration(run, words)
+        like = map_places.of_comparison(given, out, words)
         of_earlier = earlier.parent / "refined" / control.PLACES
         limits = boundary.options_of_comparison(given, out, of_earlier)
         command = programs.compare_surveys(given.earlier, best_mesh(given, out), out / "scene",
                                            *words_about_surveys(words, registration, earlier, run.scene),
-                                           *words_about_earlier_map(run), *run.system(words), *boundary.not_given_again(limits, words), *words)
+                                           *like, *run.system(words), *boundary.not_given_again(limits, words), *words)
         read = dict.fromkeys([*places[:1], *([of_earlier] if limits else []), *boundary.files_of(given, out)])
-        yield run.step("compare", command, out / CHANGE,
-                       reads=[given.earlier, earlier, *words_about_earlier_map(run)[1:], *read],
+        yield run.step("compare", command, out / map_places.CHANGE, reads=[given.earlier, earlier, *like[1:], *read],
                        anew=run.made_before("compare"))
     yield from map_steps(run, wanted)
     if "page" in wanted:
         command = programs.view_scene(run.scene, shown_cloud(given, out), whole_mesh(run, wanted), out / "page",
                                       *REFRACTIVE, *words_about_results(run, wanted), *run.words("page"))
-        also = [*([given.truth] if given.truth else []),
-                *([orthomosaic(earlier_map(given))] if shows_earlier_map(run, wanted) else [])]
+        also = [*([given.truth] if given.truth else []), *map_places.of_page(given, out, run.words("compare"))[1]]
         yield run.step("page", command, out / "page" / "index.html", also=also,
                        before=lambda: write_run_before("page", given, out))
 
