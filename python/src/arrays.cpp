@@ -51,13 +51,13 @@ py::array numbers(const py::object& value, const char* name, bool whole) {
 void require_range(const py::array& array, const char* name, const py::int_& low,
                    const py::int_& high) {
   if (array.size() == 0) return;
+  const auto text = [](py::handle number) { return py::str(number).cast<std::string>(); };
   for (const char* end : {"min", "max"}) {
     const py::object value = array.attr(end)();
     if (value < low || value > high)
       throw py::value_error(
           fmt::format("{}: has the number {}, but must have numbers from {} to {}", name,
-                      py::str(value).cast<std::string>(), py::str(low).cast<std::string>(),
-                      py::str(high).cast<std::string>()));
+                      text(value), text(low), text(high)));
   }
 }
 
