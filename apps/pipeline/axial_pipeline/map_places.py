@@ -39,8 +39,8 @@ def of_map(given, out, words):
 
 
 def of_page(given, out, words):
-    """The option of ViewScene for the map of the earlier survey, if it lies on the same plane, and the file that it then
-    reads. `words`: those of the user for CompareSurveys."""
+    """The option of ViewScene for the map of the earlier survey, if it lies on the same plane, and the file that it
+    then reads. `words`: those of the user for CompareSurveys."""
     earlier = earlier_map(given, out)
     file = earlier and earlier.with_name(f"{earlier.name}.ortho.tif")
     is_shown = file and file.exists() and (given.epsg or of_comparison(given, out, words))
