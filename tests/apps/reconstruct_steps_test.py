@@ -3,6 +3,7 @@
 when it is stopped."""
 
 import json
+import os
 import pathlib
 import shlex
 import shutil
@@ -228,7 +229,7 @@ class WithStandIns(StandIns):
             restore_colors=True, match_restored=True, until="page", truth="truth.ply", earlier="old/mesh.ply"),
             self.folder / "out")}
         self.assertEqual(list(every)[7:], ["mesh", "refine-mesh", "colors", "restored-cloud", "restored-mesh",
-                                           "restored-refine-mesh", "texture", "map", "raw-map", "compare", "page",
+                                           "restored-refine-mesh", "texture", "compare", "map", "raw-map", "page",
                                            "evaluate"])
         out = self.folder / "out"
         self.assertIn(f"-m {out}/scene_dense_refined.ply", every["colors"])
