@@ -50,7 +50,8 @@ class Layers {
   Layers(const MapOptions& options, fs::path staging)
       : options_(options), staging_(std::move(staging)) {}
 
-  // The worlds of the files that are read next: `motion` moves the world of the page there.
+  // States the world of the files that are read next: `motion` moves points from the world of the
+  // page to it.
   void use_motion(const Eigen::Isometry3d& motion) { motion_ = motion; }
 
   // Reads the map PREFIX.`end`. Error if it does not state the kind `stated`, if it does not lie on

@@ -6,7 +6,6 @@
 
 #include "axial/map.h"
 #include "base/error.h"
-#include "base/naming.h"
 #include "io/bytes/json_entry.h"
 #include "map/up_direction.h"
 
@@ -37,9 +36,9 @@ io::Entry entry_of(const nlohmann::json& whole, const char* key,
 }
 
 Eigen::Isometry3d motion_in(const nlohmann::json& whole, const std::filesystem::path& file) {
-  const bool is_aligned =
-      !whole.is_object() || !whole.contains("registration") || !whole["registration"].is_null();
-  if (!is_aligned) return Eigen::Isometry3d::Identity();
+  const bool is_null =
+      whole.is_object() && whole.contains("registration") && whole["registration"].is_null();
+  if (is_null) return Eigen::Isometry3d::Identity();  // --align none
   const io::Entry registration = entry_of(whole, "registration", file);
   Eigen::Isometry3d motion;
   motion.matrix() = matrix_in<4>(registration, "matrix");

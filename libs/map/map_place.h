@@ -38,7 +38,7 @@ struct MapPlace {
 
 // The motion that aligns the later survey of a comparison of CompareSurveys (.change.json), from
 // its world to that of the earlier survey. Error that names the file if it cannot be read, and for
-// a motion that is not one.
+// a matrix that is no rotation with a translation.
 Eigen::Isometry3d motion_of_comparison(const std::filesystem::path& file);
 
 // The axes for points that the motion moves first.

@@ -62,8 +62,9 @@ class Iterations : public ceres::IterationCallback {
     const double radius = iteration.trust_region_radius;
     const bool gains_little =
         iteration.cost_change < least_.with_least_damping && radius >= kLongestSteps;
+    const bool gained_little = std::exchange(gained_little_, gains_little);
     return (iteration.cost_change < least && radius > kLongSteps / 1000) ||
-           (gains_little && std::exchange(gained_little_, gains_little));
+           (gains_little && gained_little);
   }
 
   const AdjustSink& sink_;
