@@ -20,7 +20,7 @@ struct Derivatives {
 };
 
 Derivatives derivatives(const pose::Bundle& bundle, const pose::Observation& observation,
-                        const pose::PhotographCamera& now) {
+                        const pose::PresentCamera& now) {
   const pose::BundleCamera& camera = bundle.cameras[0];
   const Pose& start = bundle.images[observation.image].pose;
   const pose::ObservationCost cost(observation, start, camera, now);
@@ -37,7 +37,7 @@ Derivatives derivatives(const pose::Bundle& bundle, const pose::Observation& obs
 }  // namespace
 
 Information information(const pose::Bundle& bundle, std::size_t image) {
-  const pose::PhotographCamera now(bundle.cameras[0].now());
+  const pose::PresentCamera now(bundle.cameras[0], bundle.cameras[0].change);
   Eigen::Matrix<double, kPoseNumbers, kPoseNumbers> poses;
   Eigen::Matrix<double, kPoseNumbers, kHousingNumbers> across;
   Information result = Information::Zero();

@@ -67,18 +67,4 @@ refractive::PinholeLens<T> with_change(const refractive::PinholeLens<double>& me
 // The camera with `change` applied to lens and port. HousedCamera::field stays that of `measured`.
 HousedCamera with_change(const HousedCamera& measured, const HousingChange<double>& change);
 
-// Let X be the point at the distance `lambda` [m] from the origin of a ray in water, which lies on
-// the axis of the port (refractive::AxialRay), in the camera frame. The ray is the refracted ray of
-// the in-air direction (u, v, 1), with (u, v) = `tangents`. Returns the derivative of X [m] with
-// respect to the numbers 0 to 4 of `change` (columns), at constant tangents and lambda. The port is
-// `measured` with `change` applied. Without a port the result is zero.
-//
-// Use: the image of a fixed point X is the direction whose ray passes through X. By the implicit
-// function theorem, the derivative of the tangents of this direction with respect to the numbers is
-// -d(tangents)/dX times the result. Only the ray, which has a closed form, is differentiated, and
-// not the iteration of the projection.
-Eigen::Matrix<double, 3, kPortNumbers> ray_by_change(
-    const std::optional<refractive::Port<double>>& measured, const HousingChange<double>& change,
-    const Eigen::Vector2d& tangents, double lambda);
-
 }  // namespace axial::pose

@@ -55,10 +55,10 @@ CurrentCameras::CurrentCameras(std::span<const BundleCamera> cameras, const doub
   for (std::size_t i = 0; i < measured_.size(); ++i) cameras_.push_back(now(i));
 }
 
-PhotographCamera CurrentCameras::now(std::size_t camera) const {
+PresentCamera CurrentCameras::now(std::size_t camera) const {
   const HousingChange<double> change = Eigen::Map<const HousingChange<double>>(
       changes_ + kHousingNumbers * measured_[camera].same_as.value_or(camera));
-  return PhotographCamera(with_change(measured_[camera].measured, change));
+  return {measured_[camera], change};
 }
 
 void CurrentCameras::PrepareForEvaluation(bool, bool new_evaluation_point) {
@@ -72,7 +72,7 @@ bool ObservationCost::Evaluate(double const* const* parameters, double* residual
   std::copy_n(parameters[0], numbers.size(), numbers.begin());
   const Pose pose = pose_with(start_, numbers);
   const Eigen::Vector3d X = pose.to_camera(Eigen::Map<const Eigen::Vector3d>(parameters[1]));
-  const PhotographImage image = now_.image(X);
+  const PhotographImage image = now_.photograph.image(X);
   Eigen::Map<Eigen::Vector2d> residual(residuals);
   if (!image.visible) {
     // At least as far as any visible image lies from its observation.
@@ -92,12 +92,10 @@ bool ObservationCost::Evaluate(double const* const* parameters, double* residual
   if (jacobians[1]) RowMajor<3>{jacobians[1]} = by_point * pose.rotation;
   if (jacobians[2]) {
     RowMajor<kHousingNumbers> by_change(jacobians[2]);
-    const Eigen::Map<const HousingChange<double>> change(parameters[2]);
     by_change.leftCols<kPortNumbers>() =
-        -by_point *
-        ray_by_change(measured_.measured.port, change, image.tangents, (X - image.origin).norm());
+        -by_point * now_.rays.at(image.tangents, (X - image.origin).norm());
     // The focal lengths scale the picture about the principal point.
-    by_change.col(kFocalNumber) = image.pixel - now_.principal_point();
+    by_change.col(kFocalNumber) = image.pixel - now_.photograph.principal_point();
   }
   return true;
 }

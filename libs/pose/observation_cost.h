@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pose/bundle.h"
+#include "pose/rays_by_change.h"
 
 namespace axial::pose {
 
@@ -31,6 +32,16 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v);
 // d(exp([w]x) v)/dw = -[exp([w]x) v]x J.
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& w);
 
+// A camera of a bundle with a change applied: its images, and how they depend on the change.
+struct PresentCamera {
+  // The member `change` of `camera` is ignored.
+  PresentCamera(const BundleCamera& camera, const HousingChange<double>& change)
+      : photograph(with_change(camera.measured, change)), rays(camera.measured.port, change) {}
+
+  PhotographCamera photograph;
+  RaysByChange rays;
+};
+
 // The cameras for the present values of the solver's parameter blocks. They are built once for each
 // point at which the solver evaluates the cost, and not for each observation.
 class CurrentCameras : public ceres::EvaluationCallback {
@@ -44,14 +55,14 @@ class CurrentCameras : public ceres::EvaluationCallback {
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
 
   // The camera with the index `camera`. The reference stays valid as long as the object.
-  const PhotographCamera& operator[](std::size_t camera) const { return cameras_[camera]; }
+  const PresentCamera& operator[](std::size_t camera) const { return cameras_[camera]; }
 
  private:
-  PhotographCamera now(std::size_t camera) const;
+  PresentCamera now(std::size_t camera) const;
 
   std::span<const BundleCamera> measured_;
   const double* changes_;
-  std::vector<PhotographCamera> cameras_;
+  std::vector<PresentCamera> cameras_;
 };
 
 // The residual [px of the photograph] of one observation: the projected minus the observed pixel.
@@ -65,7 +76,7 @@ class ObservationCost : public ceres::SizedCostFunction<2, kPoseNumbers, 3, kHou
   // image's camera in the bundle. `now`: this camera in CurrentCameras. All arguments must outlive
   // the cost.
   ObservationCost(const Observation& observation, const Pose& start, const BundleCamera& measured,
-                  const PhotographCamera& now)
+                  const PresentCamera& now)
       : observation_(observation), start_(start), measured_(measured), now_(now) {}
 
   // Called by the solver. `jacobians` and each of its entries may be null. Returns true.
@@ -76,7 +87,7 @@ class ObservationCost : public ceres::SizedCostFunction<2, kPoseNumbers, 3, kHou
   const Observation& observation_;
   const Pose& start_;
   const BundleCamera& measured_;
-  const PhotographCamera& now_;
+  const PresentCamera& now_;
 };
 
 }  // namespace axial::pose

@@ -50,7 +50,7 @@ class ObservationCostOf : public ::testing::TestWithParam<Case> {
                            Jacobian* jacobian) const {
     const BundleCamera& camera = bundle_.cameras[0];
     const HousingChange<double> change = x.tail<kHousingNumbers>();
-    const PhotographCamera now(with_change(camera.measured, change));
+    const PresentCamera now(camera, change);
     const ObservationCost cost(observation, bundle_.images[observation.image].pose, camera, now);
     const double* blocks[] = {x.data(), x.data() + kPoseNumbers, x.data() + kPoseNumbers + 3};
     Eigen::Vector2d result;
@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(Cameras, ObservationCostOf, ::testing::ValuesIn(cases()
 TEST(ObservationCost, APointThatIsNotSeenMovesNothing) {
   const Bundle bundle = survey(camera_behind(flat_port()), {});
   const Observation& seen = bundle.observations[0];
-  const PhotographCamera now(bundle.cameras[0].now());
+  const PresentCamera now(bundle.cameras[0], bundle.cameras[0].change);
   const ObservationCost cost(seen, bundle.images[seen.image].pose, bundle.cameras[0], now);
   const PoseNumbers pose = numbers_of(bundle.images[seen.image].pose);
   const Eigen::Vector3d behind =
