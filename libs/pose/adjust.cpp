@@ -130,6 +130,7 @@ AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSi
   ceres::Solver::Options solver = solver_options(adjusted, options.max_iterations);
   const bool many = !options.poses_known && adjusted.pose_count() >= options.many_images;
   if (many) solver.initial_trust_region_radius = kLongSteps;
+  if (options.starts_close) solver.initial_trust_region_radius = kLongestSteps;
   Iterations iterations(
       sink, context,
       many ? LeastGain{options.least_gain, 0} : LeastGain{0, options.gain_of_outliers});

@@ -106,6 +106,10 @@ struct AdjustOptions : Unknowns {
   double loss_sigmas = 2;  // Huber loss: errors above this many standard deviations count linearly
   int max_iterations = 100;  // of the solver
 
+  // The bundle comes from an adjustment of nearly the same problem. adjust() then starts with steps
+  // that are hardly damped.
+  bool starts_close = false;
+
   // If at least `many_images` poses are adjusted, adjust() starts with steps that are hardly
   // damped, and ends when an iteration lowers half the cost by less than `least_gain`. A step of
   // one standard deviation along any direction lowers half the cost by 0.5. The default therefore

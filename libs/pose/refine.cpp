@@ -218,12 +218,14 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context&
   limits.max_error *= 4;
   adjusting.loss_sigmas *= 4;
   adjusting.least_gain = std::max(adjusting.least_gain, kGainOfRounds);
+  adjusting.gain_of_outliers = std::max(adjusting.gain_of_outliers, kGainOfRounds);
   Adjuster adjuster(context);
   if (!options.targets.empty()) drop_double_targets(bundle, options.targets, report);
   for (int round = 0; round < options.rounds; ++round) {
     judge(bundle, kLooseness, adjusting, report);
     judge_control(bundle, adjusting, report);
     report.last = adjuster.adjust(bundle, adjusting, fmt::format("round {}", round + 1));
+    adjusting.starts_close = true;
     // The adjusted cameras predict which of several observations in one image is the right one.
     if (round == 0) report.repeated = drop_repeated(bundle);
     const std::size_t dropped = filter(bundle, limits, &report.dropped);
@@ -243,6 +245,7 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context&
     adjusting.pixel_sigma = observed_pixel_sigma(bundle, adjusting);
   }
   adjusting.least_gain = options.adjust.least_gain;
+  adjusting.gain_of_outliers = options.adjust.gain_of_outliers;
   judge(bundle, 1, adjusting, report);
   judge_control(bundle, adjusting, report);
   report.last = adjuster.adjust(bundle, adjusting, "last adjustment");

@@ -86,9 +86,10 @@ void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 // round also drops repeated observations (drop_repeated()). `context` gets a line for each
 // round, and for an iteration of the solver if the last line is two seconds old (the lines of other
 // iterations are details). With AdjustOptions::many_images or more poses, it also gets the start
-// of each adjustment, and the rounds before the last adjustment end at an AdjustOptions::least_gain
-// of 0.1 or of `options.adjust` if that is larger: this is enough to find observations that do not
-// fit.
+// of each adjustment. The rounds before the last adjustment end at an AdjustOptions::least_gain and
+// a gain_of_outliers of 0.1, or of `options.adjust` if that is larger: this is enough to find
+// observations that do not fit. All adjustments after the first start close
+// (AdjustOptions::starts_close).
 //
 // Known positions are judged (judge_positions() in position_sigma.h) at the start and after each
 // round: positions that do not fit are left out, and the standard deviation of positions with
