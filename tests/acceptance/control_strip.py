@@ -4,7 +4,8 @@
     python3 tests/acceptance/control_strip.py [--seeds 83] [--views 60] [--base DIR]
 
 COLMAP runs once. RefinePoses runs with a known length, and with the plates at the ends of the strip as control points
-of 10 mm besides. The heights of the camera centres are compared after the best similarity, in sixths of the strip."""
+of 10 mm besides: with the right numbers of lens and port, and with numbers of a ruler. The heights of the camera
+centres are compared after the best similarity, in sixths of the strip."""
 
 import argparse
 import pathlib
@@ -12,7 +13,7 @@ import random
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from control_draws import SIGMA, control_json, found_plates, posed, refined  # noqa: E402
+from control_draws import SIGMA, control_json, drawn_numbers, found_plates, posed, refined  # noqa: E402
 from dive_runs import as_measured, line_of  # noqa: E402
 from points import BASE, point  # noqa: E402
 from support import runs  # noqa: E402
@@ -59,34 +60,44 @@ def end_plates(data, out):
     return {label: place for label, place in found_plates(data, out).items() if not END < part(place) < 1 - END}
 
 
-def measure(seed, views=VIEWS, base=BASE):
-    """A row of the table, and whether control helps enough."""
-    data, out = strip(base, seed, views)
-    brought, plates = as_measured(data, data.parent / f"{data.name}-right"), end_plates(data, out)
-    bends = []
+NUMBERS = {
+    "right": lambda data, folder, seed: as_measured(data, folder),
+    "of a ruler": lambda data, folder, seed: drawn_numbers(data, folder, random.Random(f"strip {seed}")),
+}
+
+
+def bends(seed, data, out, numbers):
+    """The bend without and with control."""
     for name in ("free", "control"):
-        folder = data.parent / f"{data.name}-{name}"
+        folder = data.parent / f"{data.name}-{name}-{numbers.replace(' ', '-')}"
         folder.mkdir(exist_ok=True)
+        brought = NUMBERS[numbers](data, folder, seed)
         options = ["--scale-from", brought.scale_from]
         if name == "control":
-            (folder / "control.json").write_text(control_json(plates, {}, random.Random(seed)))
+            (folder / "control.json").write_text(control_json(end_plates(data, out), {}, random.Random(seed)))
             options += ["--control", folder / "control.json"]
         _, model = refined(brought, out, folder, *options)
-        bends.append(bend(model, data, folder))
-    without, with_control = bends
-    return (f"| {seed} | {views} | {len(plates)} | {1e3 * without:.1f} mm | {1e3 * with_control:.1f} mm | "
-            f"{with_control / without:.2f} |"), with_control <= SHARE * without
+        yield bend(model, data, folder)
 
 
-HEAD = ("| seed | photographs | plates at the ends | bend without control | with control | ratio |\n"
-        "|---|---|---|---|---|---|")
+def measure(seed, numbers, views=VIEWS, base=BASE):
+    """A row of the table, and whether control helps enough."""
+    data, out = strip(base, seed, views)
+    without, with_control = bends(seed, data, out, numbers)
+    return (f"| {seed} | {numbers} | {views} | {len(end_plates(data, out))} | {1e3 * without:.1f} mm | "
+            f"{1e3 * with_control:.1f} mm | {with_control / without:.2f} |"), with_control <= SHARE * without
 
 
-@point(f"a strip of {VIEWS} photographs: with control points of {1e3 * SIGMA:.0f} mm at both ends, the bend of the "
-       "heights is at most a third")
+HEAD = ("| seed | numbers of lens and port | photographs | plates at the ends | bend without control | with control | "
+        "ratio |\n|---|---|---|---|---|---|---|")
+
+
+@point(f"a strip of {VIEWS} photographs, lens and port measured with a ruler: with control points of {1e3 * SIGMA:.0f} "
+       "mm at both ends, the bend of the heights is at most a third")
 def control_strip(work):
-    found = [measure(seed, VIEWS, work) for seed in FRESH_SEEDS]
-    return "\n".join([HEAD, *(row for row, _ in found)]), all(good for _, good in found)
+    found = [measure(seed, numbers, VIEWS, work) + (numbers,) for seed in FRESH_SEEDS for numbers in NUMBERS]
+    return ("\n".join([HEAD, *(row for row, _, _ in found)]),
+            all(good for _, good, numbers in found if numbers == "of a ruler"))
 
 
 def main():
@@ -97,8 +108,9 @@ def main():
     given = parser.parse_args()
     print(HEAD)
     for seed in given.seeds:
-        row, good = measure(seed, given.views, given.base)
-        print(row, "" if good else "missed", flush=True)
+        for numbers in NUMBERS:
+            row, good = measure(seed, numbers, given.views, given.base)
+            print(row, "" if good else "missed", flush=True)
 
 
 if __name__ == "__main__":

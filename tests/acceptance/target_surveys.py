@@ -19,13 +19,14 @@ from support import runs  # noqa: E402
 from support.runs import BIN, measured  # noqa: E402
 
 SEEDS = (44, 45)       # of surveys.py
+VIEWS = 24             # so that several photographs of both surveys show each plate
 LARGEST, VOLUME = 0.002, 5  # [m], [%]
 BAR = 0.5
 
 
 def dive(base, seed, *options):
     return runs.simulated(f"plates-survey-{seed}" + ("-changed" if options else ""), base, "--preset", "reef", "--seed",
-                          seed, "--targets", 4, "--bars", BAR, "--target-side", 0.15, "--medium", "water", "--truth", 0,
+                          seed, "--views", VIEWS, "--targets", 4, "--bars", BAR, "--target-side", 0.15, "--medium", "water", "--truth", 0,
                           *options).data
 
 
