@@ -26,8 +26,8 @@ BAR = 0.5
 
 def dive(base, seed, *options):
     return runs.simulated(f"plates-survey-{seed}" + ("-changed" if options else ""), base, "--preset", "reef", "--seed",
-                          seed, "--views", VIEWS, "--targets", 4, "--bars", BAR, "--target-side", 0.15, "--medium", "water", "--truth", 0,
-                          *options).data
+                          seed, "--views", VIEWS, "--targets", 4, "--bars", BAR, "--target-side", 0.15, "--medium",
+                          "water", "--truth", 0, *options).data
 
 
 def survey(data, out, earlier=None):
