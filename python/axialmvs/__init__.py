@@ -7,13 +7,16 @@ has x to the right, y down and z forward. docs/python.md has examples.
 
 from ._axialmvs import (Camera, DomePort, Error, FlatPort, Housing, Lens, Stopped, WaterSurface, read_cameras,
                         read_housing, read_photograph, write_housing)
-from .files import (read_cloud, read_depth_map, read_mesh, read_scene, write_cloud, write_depth_map, write_mesh,
-                    write_scene)
-from .records import DepthMap, Image, Mesh, PointCloud, Region, Scene
-from .stages import Densified, clean_mesh, densify, reconstruct_mesh, refine_mesh
+from .files import (read_cloud, read_depth_map, read_mesh, read_scene, read_textured_mesh, write_cloud, write_depth_map,
+                    write_mesh, write_scene, write_textured_mesh)
+from .records import (ChangedRegion, Comparison, DepthMap, Image, Mesh, PointCloud, Region, Scene, SurfaceMap,
+                      TexturedMesh)
+from .stages import (Densified, clean_mesh, compare_surveys, densify, map_surface, reconstruct_mesh, refine_mesh,
+                     texture_mesh)
 
-__all__ = ["Camera", "Densified", "DepthMap", "DomePort", "Error", "FlatPort", "Housing", "Image", "Lens", "Mesh",
-           "PointCloud", "Region", "Scene", "Stopped", "WaterSurface", "clean_mesh", "densify", "read_cameras",
+__all__ = ["Camera", "ChangedRegion", "Comparison", "Densified", "DepthMap", "DomePort", "Error", "FlatPort",
+           "Housing", "Image", "Lens", "Mesh", "PointCloud", "Region", "Scene", "Stopped", "SurfaceMap",
+           "TexturedMesh", "WaterSurface", "clean_mesh", "compare_surveys", "densify", "map_surface", "read_cameras",
            "read_cloud", "read_depth_map", "read_housing", "read_mesh", "read_photograph", "read_scene",
-           "reconstruct_mesh", "refine_mesh", "write_cloud", "write_depth_map", "write_housing", "write_mesh",
-           "write_scene"]
+           "read_textured_mesh", "reconstruct_mesh", "refine_mesh", "texture_mesh", "write_cloud", "write_depth_map",
+           "write_housing", "write_mesh", "write_scene", "write_textured_mesh"]

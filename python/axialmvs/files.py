@@ -2,7 +2,7 @@
 """Files of depth maps, clouds, meshes and scenes as records."""
 
 from . import _axialmvs
-from .records import DepthMap, Image, Mesh, PointCloud, Region, Scene
+from .records import DepthMap, Image, Mesh, PointCloud, Region, Scene, TexturedMesh
 
 
 def read_depth_map(path) -> DepthMap:
@@ -33,6 +33,16 @@ def read_mesh(path) -> Mesh:
 def write_mesh(path, mesh: Mesh, *, double_precision=False) -> None:
     """Writes a mesh (.ply). double_precision: positions of the world as float64, without origin."""
     _axialmvs.write_mesh(path, vars(mesh), double_precision)
+
+
+def read_textured_mesh(path) -> TexturedMesh:
+    """Reads a mesh with its textures (.ply, .obj, .glb, .gltf)."""
+    return TexturedMesh(**_axialmvs.read_textured_mesh(path))
+
+
+def write_textured_mesh(path, mesh: TexturedMesh) -> None:
+    """Writes a mesh with its textures, in the format of the extension: .ply, .obj, .glb or .gltf."""
+    _axialmvs.write_textured_mesh(path, vars(mesh))
 
 
 def scene_record(values) -> Scene:

@@ -70,6 +70,75 @@ class Mesh:
 
 
 @dataclass(eq=False)
+class TexturedMesh(Mesh):
+    """A mesh whose faces show parts of textures. A coordinate (x, y) is in pixels of the texture of its face."""
+
+    uv: np.ndarray = field(default_factory=lambda: np.zeros((0, 3, 2), np.float32))  # (M, 3, 2) float32, of the corners
+    texture_of: np.ndarray = field(default_factory=lambda: np.zeros(0, np.uint32))  # (M,) uint32: index into `textures`
+    textures: list[np.ndarray] = field(default_factory=list)  # (height, width, 3) uint8: red, green, blue
+
+
+@dataclass(eq=False)
+class MapPlace:
+    """The place of a map: its axes, and its grid of pixels. in the map = axes @ position in the world + offset."""
+
+    axes: np.ndarray  # (3, 3): rows are x (to the right), y (to the top) and z (height) of the map in the world
+    offset: np.ndarray  # (3,) [m]
+    left: float  # x and y of the upper left corner of the upper left pixel in the map [m]
+    top: float
+    pixel: float  # width of a pixel [m]
+
+    def places(self, rows, columns) -> np.ndarray:
+        """The centres of pixels in the map: (..., 2)."""
+        return np.stack([self.left + (np.asarray(columns) + 0.5) * self.pixel,
+                         self.top - (np.asarray(rows) + 0.5) * self.pixel], axis=-1)
+
+
+@dataclass(eq=False)
+class SurfaceMap(MapPlace):
+    """A map of a mesh, seen against the direction of its heights."""
+
+    heights: np.ndarray  # (rows, columns) float32 [m]; NaN: no surface
+    colors: np.ndarray | None  # (rows, columns, 4) uint8: red, green, blue, and 255 where the colour is known
+    shades: np.ndarray  # (rows, columns) uint8: relief shading; 0: no surface
+
+
+@dataclass(eq=False)
+class ChangedRegion:
+    """Adjacent pixels whose surface came or went."""
+
+    came: bool
+    volume: float  # [m^3], with its standard deviation
+    sigma: float
+    area: float  # [m^2]
+    x: float  # the mean of the places of the pixels in the map
+    y: float
+    largest: float  # the largest absolute difference [m]
+
+
+@dataclass(eq=False)
+class Comparison(MapPlace):
+    """What changed between two surveys. Arrays have a value for each pixel; NaN: not compared.
+
+    later position in the frame of the earlier survey = rotation @ position + translation, both in the world.
+    """
+
+    before: np.ndarray  # (rows, columns) float32: height of the earlier survey [m]
+    difference: np.ndarray  # the same: later minus earlier height [m]
+    sigma: np.ndarray  # the same: standard deviation of the difference [m]
+    classes: np.ndarray  # (rows, columns) uint8; 0: unchanged, 1: gone, 2: came, 255: not compared
+    regions: list[ChangedRegion]  # the largest volume first
+    came: tuple[float, float]  # volume and its standard deviation [m^3]
+    gone: tuple[float, float]
+    net: tuple[float, float]  # what came minus what went
+    area_compared: float  # [m^2]
+    area_unseen: float  # not compared because too few photographs see it [m^2]
+    noise: float  # standard deviation of differences on level ground [m]
+    rotation: np.ndarray  # (3, 3); the identity unless the later survey was aligned
+    translation: np.ndarray  # (3,) [m]
+
+
+@dataclass(eq=False)
 class Image:
     """A photograph of a scene: its file, its camera and its pose. in camera = rotation @ (position - centre)."""
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from . import _axialmvs
 from .files import read_cloud, read_scene, scene_values
-from .records import DepthMap, Mesh, PointCloud, Scene
+from .records import ChangedRegion, Comparison, DepthMap, Mesh, PointCloud, Scene, SurfaceMap, TexturedMesh
 
 
 @dataclass(eq=False)
@@ -102,3 +102,40 @@ def refine_mesh(mesh: Mesh, scene, *, photographs=None, masks=None, **options) -
     faces. Keywords: those that all stages have (see densify), and the options of the stage, which docs/python.md lists.
     """
     return Mesh(**_axialmvs.refine_mesh(vars(mesh), *_survey(scene, photographs, masks), options))
+
+
+def texture_mesh(mesh: Mesh, scene, *, photographs=None, masks=None, **options) -> TexturedMesh:
+    """Gives a mesh textures from photographs, as TextureMesh.
+
+    scene, photographs, masks: as for densify. The mesh has the origin of the scene. Faces that are too large for linear
+    texture coordinates are split. Keywords: those that all stages have (see densify), and the options of the stage,
+    which docs/python.md lists.
+    """
+    return TexturedMesh(**_axialmvs.texture_mesh(vars(mesh), *_survey(scene, photographs, masks), options))
+
+
+def map_surface(mesh: Mesh, *, pixel, up=None, **options) -> SurfaceMap:
+    """The heights of a mesh and, if it is a TexturedMesh, its orthomosaic.
+
+    pixel: width of a pixel [m]. up: the direction of the heights in the world, (3,); by default z. Faces that are
+    marked as unseen are left out. Keywords: those that all stages have (see densify).
+    """
+    return SurfaceMap(**_axialmvs.map_surface(vars(mesh), options | {"pixel": pixel, "up": up}))
+
+
+def compare_surveys(before: Mesh, after: Mesh, *, scene_before=None, scene_after=None, **options) -> Comparison:
+    """What changed from the mesh of a survey to that of a later one, as CompareSurveys.
+
+    scene_before, scene_after: the Scenes of the surveys or their paths, so that places which too few photographs see
+    are not compared. Keywords: those that all stages have (see densify), and the options of the stage, which
+    docs/python.md lists.
+    """
+
+    def values(scene):
+        if scene is None:
+            return None
+        return scene_values(scene if isinstance(scene, Scene) else read_scene(scene))
+
+    found = _axialmvs.compare_surveys(vars(before), vars(after), values(scene_before), values(scene_after), options)
+    found["regions"] = [ChangedRegion(**region) for region in found["regions"]]
+    return Comparison(**found)

@@ -81,6 +81,12 @@ struct Numbers<std::array<T, N>> {
   static constexpr py::ssize_t kCount = N;
 };
 
+template <class T, int N, std::size_t Count>
+struct Numbers<std::array<Eigen::Matrix<T, N, 1>, Count>> {
+  using Type = T;
+  static constexpr py::ssize_t kCount = N * static_cast<py::ssize_t>(Count);
+};
+
 // The numbers of `items` as an array, which takes the memory of `items`: shape (size,) or
 // (size, kCount).
 template <class Item>

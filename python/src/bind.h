@@ -21,5 +21,7 @@ void bind_files(py::module_& module);         // depth maps, clouds, meshes, sce
 void bind_densify(py::module_& module);
 void bind_meshes(py::module_& module);
 void bind_refine(py::module_& module);
+void bind_texture(py::module_& module);
+void bind_maps(py::module_& module);  // maps, and comparisons of two surveys
 
 }  // namespace axial::python

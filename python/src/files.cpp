@@ -14,6 +14,7 @@
 #include "io/openmvs/mvs.h"
 #include "io/openmvs/scene_with_cameras.h"
 #include "io/ply/ply.h"
+#include "io/textured/textured_mesh.h"
 #include "scene/local_frame.h"
 #include "src/bind.h"
 #include "src/records.h"
@@ -43,13 +44,6 @@ void write_depth_map(const fs::path& path, const py::dict& fields) {
   const DepthMap map = to_depth_map(fields);
   const auto made_from = fields["made_from"].cast<std::string>();
   unlocked([&] { io::write_dmap(path, map, made_from); });
-}
-
-// The frame in which float positions of a file are exact: its own, or for doubles in the world a
-// frame near its first vertex.
-LocalFrame frame_of_file(const fs::path& path) {
-  const io::PlyPlace place = io::ply_place(path);
-  return place.frame.is_world() ? frame_near(place.first_vertex) : place.frame;
 }
 
 py::dict read_cloud(const fs::path& path) {
@@ -116,6 +110,11 @@ py::object read_photograph(const fs::path& path) {
 }
 
 }  // namespace
+
+LocalFrame frame_of_file(const fs::path& path) {
+  const io::MeshPlace place = io::mesh_place(path);
+  return place.frame.is_world() ? frame_near(place.first_vertex) : place.frame;
+}
 
 io::SceneFiles scene_files(const fs::path& scene, const std::optional<fs::path>& working_folder,
                            const std::optional<fs::path>& housing, const std::string& ports,

@@ -17,4 +17,6 @@ PYBIND11_MODULE(_axialmvs, module) {
   bind_densify(module);
   bind_meshes(module);
   bind_refine(module);
+  bind_texture(module);
+  bind_maps(module);
 }

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <opencv2/imgproc.hpp>
+
 namespace axial::python {
 namespace {
 
@@ -113,6 +115,34 @@ Mesh to_mesh(const py::dict& fields) {
   mesh.faces = items_of<std::array<std::uint32_t, 3>>(fields, "faces");
   mesh.colors = items_of<Rgb>(fields, "colors");
   mesh.unseen = items_of<std::uint8_t>(fields, "unseen");
+  return mesh;
+}
+
+py::dict fields_of(TexturedMesh mesh, const LocalFrame& frame) {
+  py::dict fields = fields_of(std::move(mesh.mesh), frame);
+  py::list textures;
+  for (const cv::Mat3b& texture : mesh.textures) {
+    cv::Mat3b rgb;
+    cv::cvtColor(texture, rgb, cv::COLOR_BGR2RGB);
+    textures.append(to_array(rgb));
+  }
+  fields["uv"] = to_array(std::move(mesh.uv)).attr("reshape")(-1, 3, 2);
+  fields["texture_of"] = to_array(std::move(mesh.texture_of));
+  fields["textures"] = textures;
+  return fields;
+}
+
+TexturedMesh to_textured_mesh(const py::dict& fields) {
+  TexturedMesh mesh{to_mesh(fields), {}, {}, {}};
+  if (!fields.contains("uv")) return mesh;
+  const Array<float> uv = array_argument<float>(fields["uv"], "uv", {kAny, 3, 2});
+  mesh.uv = items_argument<TexturedMesh::Corners>(uv.attr("reshape")(-1, 6), "uv");
+  mesh.texture_of = items_of<std::uint32_t>(fields, "texture_of");
+  for (const py::handle& texture : fields["textures"]) {
+    const auto rgb =
+        image_argument<cv::Vec3b>(py::reinterpret_borrow<py::object>(texture), "textures");
+    cv::cvtColor(rgb, mesh.textures.emplace_back(), cv::COLOR_RGB2BGR);
+  }
   return mesh;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "axial/refine.h"
 
-#include <memory>
-
 #include "mesh/clean.h"
 #include "src/bind.h"
 #include "src/mesh_options.h"
@@ -79,16 +77,7 @@ py::dict refine_mesh(const py::dict& fields, const py::object& scene, const py::
   add_keywords(known, refinement);
   controls.add_to(known);
   known.take(keywords, "refine_mesh");
-  use_given_masks(keywords, refinement.survey);
-  if (call.in_memory()) {
-    refuse_in_memory(keywords);
-    refinement.survey.files.scene = "survey in memory";  // for messages
-    refinement.survey.has_masks = false;                 // in files
-    refinement.survey.memory_survey =
-        std::make_shared<const survey::MemorySurvey>(memory_survey(call));
-  } else {
-    take_files(call, refinement.survey);
-  }
+  take_survey(call, keywords, refinement.survey);
   Mesh mesh = to_mesh(fields);
   mesh.unseen.clear();  // faces are split
   LocalFrame frame = frame_of(fields);

@@ -17,4 +17,8 @@ io::SceneFiles scene_files(const std::filesystem::path& scene,
                            const std::optional<std::filesystem::path>& housing,
                            const std::string& ports, bool allow_missing);
 
+// The frame in which float positions of a file of a mesh or cloud are exact: its own, or for
+// doubles in the world a frame near its first vertex.
+LocalFrame frame_of_file(const std::filesystem::path& path);
+
 }  // namespace axial::python

@@ -27,7 +27,7 @@ std::vector<ViewScore> to_scores(const std::vector<Neighbour>& tuples) {
   return scores;
 }
 
-py::dict fields_of(const SceneImage& image, std::size_t index) {
+py::dict image_fields(const SceneImage& image, std::size_t index) {
   const py::object id = image.id == kNoId ? py::object(py::none()) : py::int_(image.id);
   CameraModel model = image.camera;
   // An image without a pose may have a camera that is not possible.
@@ -73,7 +73,7 @@ py::dict fields_of(const Scene& scene, const LocalFrame& frame) {
   if (cloud.view_begin.empty()) cloud.view_begin = {0};
   py::list images;
   for (std::size_t i = 0; i < scene.images.size(); ++i)
-    images.append(fields_of(scene.images[i], i));
+    images.append(image_fields(scene.images[i], i));
   py::dict points = fields_of(std::move(cloud), frame);
   if (points["view_images"].is_none()) points["view_images"] = Array<std::uint32_t>(0);
   return py::dict("images"_a = images, "points"_a = points["positions"],

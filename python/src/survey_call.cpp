@@ -3,6 +3,7 @@
 
 #include <pybind11/stl/filesystem.h>
 
+#include <memory>
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
@@ -38,6 +39,15 @@ void take_files(const SurveyCall& call, survey::Options& options) {
   options.files.scene = std::filesystem::absolute(call.scene.cast<std::filesystem::path>());
   if (options.files.working_folder.empty())
     options.files.working_folder = options.files.scene.parent_path();
+}
+
+void take_survey(const SurveyCall& call, const py::dict& keywords, survey::Options& options) {
+  use_given_masks(keywords, options);
+  if (!call.in_memory()) return take_files(call, options);
+  refuse_in_memory(keywords);
+  options.files.scene = "survey in memory";  // for messages
+  options.has_masks = false;                 // in files
+  options.memory_survey = std::make_shared<const survey::MemorySurvey>(memory_survey(call));
 }
 
 void add_survey_keywords(Keywords& keywords, survey::Options& options) {

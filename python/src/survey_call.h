@@ -23,6 +23,10 @@ survey::MemorySurvey memory_survey(const SurveyCall& call);
 // Sets the files of the scene, with its folder as the working folder unless one is set.
 void take_files(const SurveyCall& call, survey::Options& options);
 
+// Sets the files of the scene, or its data in memory, for a stage whose keywords are `keywords`.
+// `call` must outlive the survey. Errors as for refuse_in_memory().
+void take_survey(const SurveyCall& call, const py::dict& keywords, survey::Options& options);
+
 // Adds the keywords of the survey, except the paths of the scene.
 void add_survey_keywords(Keywords& keywords, survey::Options& options);
 
