@@ -63,21 +63,24 @@ PROGRAMS = {program.name: program for program in (
                             "--export-type", "glb", "--boundary", "areas.geojson", "--boundary-map", "map.dem.tif"),
             (*DENSE, "mesh.ply", PHOTOGRAPHS[0], "areas.geojson", "map.dem.tif"), PHOTOGRAPHS),
     Program("MapSurface", ("-i", "scene_dense.mvs", "-m", "textured.ply", "-o", "out",
-                           "--ground-sample-distance", "0.02", "--boundary", "areas.geojson"),
-            (*DENSE, "textured.ply", "textured0.png", "areas.geojson"), PHOTOGRAPHS),
+                           "--ground-sample-distance", "0.02", "--boundary", "areas.geojson", "--like",
+                           "first.change.json", "--profiles", "lines.geojson", "--preset", "archive", "--widths",
+                           "8,4"),
+            (*DENSE, "textured.ply", "textured0.png", "areas.geojson", "first.change.json", "lines.geojson"),
+            PHOTOGRAPHS),
     Program("CompareSurveys", ("-i", "mesh.ply", "--other", "textured.ply", "--scene",
-                               "scene_dense.mvs", "-o", "out", "--gsd", "0.02"),
-            ("mesh.ply", "textured.ply", *DENSE), ("textured0.png", *PHOTOGRAPHS)),
+                               "scene_dense.mvs", "-o", "out", "--gsd", "0.02", "--like", "map.dem.tif"),
+            ("mesh.ply", "textured.ply", *DENSE, "map.dem.tif"), ("textured0.png", *PHOTOGRAPHS)),
     Program("MeasureSurface", ("-i", "mesh.ply", "--areas", "areas.geojson", "--map", "map.dem.tif", "-o", "out"),
             ("mesh.ply", "areas.geojson", "map.dem.tif"), ()),
     Program("ProjectLabels", ("-i", "scene_dense.mvs", "-m", "mesh.ply", "--from-photographs", "drawn.json", "--map",
                               "map.dem.tif", "-o", "out"),
             (*DENSE, "mesh.ply", "drawn.json", "map.dem.tif"), PHOTOGRAPHS),
     Program("ViewScene", ("-i", "scene_dense.mvs", "-p", "scene_dense.ply", "-m", "textured.ply",
-                          "--report", "out", "--max-points", "2000", "--map", "map", "--sfm-model",
-                          "sim/sparse", "--photograph-size", "40", "--depth-map-size", "40"),
-            (*DENSE, "scene_dense.ply", "textured.ply", "textured0.png", "map.dem.tif", MAPS[0],
-             *MODEL, PHOTOGRAPHS[0]),
+                          "--report", "out", "--max-points", "2000", "--map", "map", "--raw-map", "raw",
+                          "--earlier-map", "old", "--sfm-model", "sim/sparse", "--photograph-size", "40", "--depth-map-size", "40"),
+            (*DENSE, "scene_dense.ply", "textured.ply", "textured0.png", "map.dem.tif", "raw.ortho.tif",
+             "old.ortho.tif", MAPS[0], *MODEL, PHOTOGRAPHS[0]),
             (*PHOTOGRAPHS, *MAPS, "map.ortho.tif", "map.sigma.tif", "map.views.tif")),
     Program("TransformScene", ("-i", "scene.mvs", "-p", "scene_dense.ply", "-m", "textured.ply",
                                "--positions", "positions.csv", "--rigid", "-o", "out.mvs"),
@@ -169,6 +172,10 @@ def make_all(binaries, folder):
     run("ReconstructMesh", "-i", "scene_dense.mvs", "-o", "mesh.ply")
     run("TextureMesh", "-i", "scene_dense.mvs", "-m", "mesh.ply", "-o", "textured.ply")
     run("MapSurface", *PROGRAMS["MapSurface"].options[:5], "map", "--ground-sample-distance", "0.02")
+    run("CompareSurveys", "-i", "mesh.ply", "--other", "textured.ply", "--scene", "scene_dense.mvs", "-o", "first",
+        "--gsd", "0.02", "--like", "map.dem.tif")
+    for name in ("raw.ortho.tif", "old.ortho.tif"):
+        shutil.copy(folder / "map.ortho.tif", folder / name)
     (folder / "clip.avi").write_bytes(moving_clip())
     subprocess.run([binaries / "drawn_boards", "1", folder / "board"], check=True, stdout=subprocess.DEVNULL)
     write_few(folder)
@@ -181,6 +188,9 @@ def make_all(binaries, folder):
     (folder / "areas.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
         {"type": "Feature", "properties": {"name": "plot"}, "geometry": {"type": "Polygon", "coordinates": [
             [[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, -0.1]]]}}]}))
+    (folder / "lines.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": {"name": "line"}, "geometry": {
+            "type": "LineString", "coordinates": [[-0.1, -0.05], [0.08, 0.02]]}}]}))
     (folder / "drawn.json").write_text(json.dumps({
         "images": [{"id": 1, "file_name": "0001.jpg", "width": 160, "height": 120}],
         "categories": [{"id": 1, "name": "coral"}],
