@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <set>
 
 #include "pose/free_motions.h"
 #include "pose/known.h"
@@ -216,6 +215,51 @@ std::optional<Suspect> uncontrolled_now(std::span<const Suspect> before,
   return {};
 }
 
+// The bundle, adjusted without a value.
+struct Trial {
+  Suspect one;
+  AdjustOptions options;  // without `one`
+  Bundle bundle;
+  double cost = 0;  // half of it
+};
+
+Trial trial_without(const Suspect& one, const Bundle& bundle, const AdjustOptions& options,
+                    const Context& context) {
+  Trial trial{one, without(options, one), bundle};
+  AdjustOptions adjusting = trial.options;
+  adjusting.starts_close = true;
+  trial.cost = adjust(trial.bundle, adjusting, {}, context).final_cost;
+  return trial;
+}
+
+// The value without which the others agree best, and a value that explains the deviations nearly as
+// well, if there is one.
+struct Verdict {
+  Trial best;
+  std::optional<Suspect> rival;
+};
+
+// Which value is wrong; nothing if none deviates. `found`: the suspects. The largest deviation need
+// not be that of the wrong value: a wrong value that few others control draws them to itself.
+std::optional<Verdict> verdict_on(std::span<const Suspect> found, const Bundle& bundle,
+                                  const AdjustOptions& options, const Context& context) {
+  constexpr std::size_t kMostTrials = 4;
+  constexpr double kClear = kWrong * kWrong / 2;  // of half the cost
+  std::optional<Verdict> verdict;
+  std::size_t trials = 0;
+  for (const Suspect& one : found) {
+    if (!is_wrong(one) || trials++ >= kMostTrials) continue;
+    Trial trial = trial_without(one, bundle, options, context);
+    if (!verdict || trial.cost < verdict->best.cost) verdict = Verdict{std::move(trial), {}};
+  }
+  if (!verdict) return {};
+  verdict->rival = uncontrolled_now(found, verdict->best.options, bundle);
+  if (verdict->rival &&
+      trial_without(*verdict->rival, bundle, options, context).cost > verdict->best.cost + kClear)
+    verdict->rival.reset();
+  return verdict;
+}
+
 // Removes lengths with another scale than most.
 void leave_out_other_scales(const Bundle& bundle, AdjustOptions& options,
                             std::vector<std::string>& lines) {
@@ -327,33 +371,34 @@ std::vector<std::string> leave_out_outliers(const Bundle& bundle, AdjustOptions&
   return lines;
 }
 
-bool leave_out_worst(const Bundle& bundle, AdjustOptions& options,
-                     std::vector<std::string>& lines) {
+bool leave_out_worst(const Bundle& bundle, AdjustOptions& options, std::vector<std::string>& lines,
+                     const Context& context) {
   const std::vector<Suspect> found = suspects(bundle, options);
-  for (const Suspect& one : found) {
-    if (!is_wrong(one)) continue;
-    AdjustOptions others = without(options, one);
-    if (uncontrolled_now(found, others, bundle)) continue;
-    lines.push_back(one.line + "; it is left out");
-    options = std::move(others);
-    return true;
+  const std::optional<Verdict> verdict = verdict_on(found, bundle, options, context);
+  if (!verdict) return false;
+  const Suspect* wrong = &verdict->best.one;
+  std::vector<Suspect> still;
+  if (verdict->rival) {
+    // Another value may be wrong, too. It then deviates without the best one as well.
+    still = suspects(verdict->best.bundle, verdict->best.options);
+    const auto other = std::ranges::find_if(still, [&](const Suspect& one) {
+      return is_wrong(one) && one.name != verdict->rival->name;
+    });
+    if (other == still.end()) return false;
+    wrong = &*std::ranges::find(found, other->name, &Suspect::name);
   }
-  return false;
+  lines.push_back(wrong->line + "; it is left out");
+  options = without(std::move(options), *wrong);
+  return true;
 }
 
-std::vector<std::string> contradictions(const Bundle& bundle, const AdjustOptions& options) {
+std::vector<std::string> contradictions(const Bundle& bundle, const AdjustOptions& options,
+                                        const Context& context) {
   const std::vector<Suspect> found = suspects(bundle, options);
-  std::vector<std::string> lines;
-  std::set<std::string> named;
-  for (const Suspect& one : found) {
-    if (!is_wrong(one)) continue;
-    const auto other = uncontrolled_now(found, without(options, one), bundle);
-    if (!other || named.contains(one.name)) continue;
-    named.insert({one.name, other->name});
-    lines.push_back(fmt::format("{}; {}: the two contradict each other, and both are kept",
-                                one.line, other->line));
-  }
-  return lines;
+  const std::optional<Verdict> verdict = verdict_on(found, bundle, options, context);
+  if (!verdict || !verdict->rival) return {};
+  return {fmt::format("{}; {}: the two contradict each other, and both are kept",
+                      verdict->best.one.line, verdict->rival->line)};
 }
 
 }  // namespace axial::pose

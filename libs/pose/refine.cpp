@@ -250,7 +250,7 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context&
   judge_control(bundle, adjusting, report);
   report.last = adjuster.adjust(bundle, adjusting, "last adjustment");
   const auto leave_out_wrong = [&] {
-    while (leave_out_worst(bundle, adjusting, report.wrong_control))
+    while (leave_out_worst(bundle, adjusting, report.wrong_control, context))
       report.last = adjuster.adjust(bundle, adjusting, "adjustment without a wrong bar or place");
   };
   for (int i = 0; i < kMostOfDelays && set_delays(bundle); ++i)
@@ -267,7 +267,7 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const Context&
   report.lost = lost_knowledge(bundle, adjusting);
   judge_control(bundle, adjusting, report);
   for (const auto& lines :
-       {contradictions(bundle, adjusting), signs_of_a_mirror(bundle, adjusting)})
+       {contradictions(bundle, adjusting, context), signs_of_a_mirror(bundle, adjusting)})
     report.wrong_control.insert(report.wrong_control.end(), lines.begin(), lines.end());
   report.distances = adjusting.distances;
   report.places = adjusting.places;

@@ -233,6 +233,26 @@ TEST(Bars, ThatContradictEachOtherAreBothNamed) {
   EXPECT_THAT(report.distances, SizeIs(2));
 }
 
+// Three of four plates lie nearly on a line. The wrong plate draws those to itself that only it
+// controls, so that its own deviation may be the smaller one.
+TEST(Places, OfWhichOneIsWrongAreToldByTheCostWithoutIt) {
+  constexpr double kSigma = 0.005, kMoved = 0.15;
+  const std::vector<std::size_t> four{5, 6, 7, 9};
+  for (const std::size_t moved : four) {
+    Dive dive;
+    for (const std::size_t plate : four) {
+      const Eigen::Vector3d error =
+          plate == moved ? Eigen::Vector3d(kMoved, 0, 0) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+      dive.options.adjust.places.push_back(
+          place(dive.options.targets, dive.plates[plate], error, kSigma));
+    }
+    const RefineReport report = dive.refine();
+    ASSERT_THAT(report.wrong_control, SizeIs(1)) << moved;
+    EXPECT_THAT(report.wrong_control[0], HasSubstr(dive.plates[moved].label + " is "));
+    EXPECT_THAT(report.wrong_control[0], HasSubstr("left out"));
+  }
+}
+
 // Four plates at the corners with errors of 10 mm, and single plates as checks.
 TEST(Places, PlaceTheModelAsWellAsStated) {
   constexpr int kDraws = 8;
