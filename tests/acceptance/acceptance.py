@@ -17,7 +17,8 @@ from points import BASE, POINTS  # noqa: E402
 for module in ("clouds", "photographs", "times", "quality", "meshes", "unseen", "maps", "surveys",
                "whole_programs", "memory", "tiles", "survey_page", "still", "false_alarms", "dives",
                "random_dives", "lawnmower", "boards", "pair_costs", "control_draws", "control_strip", "target_surveys",
-               "rig_surveys", "target_detection", "colors", "own_water", "color_controls", "measured_plots"):
+               "rig_surveys", "target_detection", "colors", "own_water", "color_controls", "measured_plots",
+               "packages"):
     importlib.import_module(module)
 
 
