@@ -120,14 +120,14 @@ def add_notices(prefix, files):
         sys.exit(f"archive.py: {unowned[0]}: belongs to no Debian package, so that its license is not known")
     folder = prefix / NOTICES
     folder.mkdir(parents=True)
-    rows = set()
-    for package in sorted(set(owners.values())):
+    packages = sorted(set(owners.values()))
+    for package in packages:
         shutil.copyfile(f"/usr/share/doc/{package}/copyright", folder / f"{package}.copyright")
-        rows.add(output_of("dpkg-query", "--show", "--showformat",
-                           "${Package} ${Version}, source ${source:Package} ${source:Version}\n", package))
+    rows = output_of("dpkg-query", "--show", "--showformat",
+                     "${Package} ${Version}, source ${source:Package} ${source:Version}\n", *packages)
     (folder / "packages.txt").write_text(
         "The libraries and data of this archive are from these packages of Debian, whose sources\n"
-        "https://snapshot.debian.org keeps:\n\n" + "".join(sorted(rows)), encoding="utf-8")
+        "https://snapshot.debian.org keeps:\n\n" + rows, encoding="utf-8")
 
 
 def complete(prefix):
