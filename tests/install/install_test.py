@@ -205,6 +205,22 @@ class Archive(Case):
         (self.folder / tiff.name).rename(tiff)
         self.check_data(prefix)
 
+    def test_its_bytes_depend_on_the_contents_alone(self):
+        packed = []
+        for order in ("ab", "ba"):
+            prefix = self.folder / order / "axialmvs"
+            prefix.mkdir(parents=True)
+            for name in order:
+                (prefix / name).write_text(name)
+                os.utime(prefix / name, (len(packed), len(packed)))
+                (prefix / name).chmod(0o600 if packed else 0o644)
+            archive.pack(prefix, self.folder / f"{order}.tar.xz")
+            packed.append((self.folder / f"{order}.tar.xz").read_bytes())
+        self.assertEqual(packed[0], packed[1])
+        (prefix / "a").write_text("other")
+        archive.pack(prefix, self.folder / "other.tar.xz")
+        self.assertNotEqual((self.folder / "other.tar.xz").read_bytes(), packed[0])
+
     def check_data(self, prefix):
         """Programs look for coordinate systems in the archive: with an empty data base they know none."""
         def said():
