@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # cmake --install: programs, their man pages and documents (component "programs"); libraries, the public
 # headers (libs/public and refractive) and the CMake package AxialMVS (component "development"); the Python package
-# (component "python", python/CMakeLists.txt). cpack -G DEB makes a package of the programs and one for Python.
+# (component "python", python/CMakeLists.txt). cpack -G DEB makes packages (AxialPackages.cmake).
 include(GNUInstallDirs)
+set(doc_dir ${CMAKE_INSTALL_DATAROOTDIR}/doc/axialmvs)
 include(CMakePackageConfigHelpers)
 
 # Programs.
@@ -15,23 +16,39 @@ install(DIRECTORY apps/pipeline/axial_pipeline DESTINATION share/axialmvs COMPON
   FILES_MATCHING PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
 install(FILES apps/pipeline/Snakefile DESTINATION share/axialmvs COMPONENT programs)
 install(DIRECTORY apps/pipeline/profiles DESTINATION share/axialmvs COMPONENT programs)
-install(FILES README.md LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs
+install(FILES README.md LICENSE CHANGELOG.md DESTINATION ${doc_dir} COMPONENT programs)
+install(DIRECTORY docs DESTINATION ${doc_dir} COMPONENT programs
   PATTERN "*.py" EXCLUDE PATTERN __pycache__ EXCLUDE PATTERN paper EXCLUDE)
 
 # Man pages, from --help.
 find_program(AXIAL_HELP2MAN help2man)
-mark_as_advanced(AXIAL_HELP2MAN)
-if(AXIAL_HELP2MAN AND NOT AXIAL_SANITIZE)
+find_program(AXIAL_GZIP gzip)
+find_program(AXIAL_SCRIPT_PYTHON python3)
+mark_as_advanced(AXIAL_HELP2MAN AXIAL_GZIP AXIAL_SCRIPT_PYTHON)
+set(pages)
+# axial_add_page(NAME PROGRAM DEPENDENCIES OPTIONS...): the compressed man page of the program in section 1.
+function(axial_add_page name program dependencies)
+  set(page ${PROJECT_BINARY_DIR}/man/${name}.1)
+  add_custom_command(OUTPUT ${page}.gz DEPENDS ${dependencies}
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/man
+    COMMAND ${AXIAL_HELP2MAN} --no-info --manual AxialMVS
+      --name "program of AxialMVS, dense 3D reconstruction under water and in air" ${ARGN} --output ${page} ${program}
+    COMMAND ${AXIAL_GZIP} -9nf ${page}
+    COMMENT "Writing the man page of ${name}" VERBATIM)
+  set(pages ${pages} ${page}.gz PARENT_SCOPE)
+endfunction()
+if(AXIAL_HELP2MAN AND AXIAL_GZIP AND AXIAL_SCRIPT_PYTHON AND NOT AXIAL_SANITIZE)
   foreach(program IN LISTS AXIAL_PROGRAMS)
-    set(page ${PROJECT_BINARY_DIR}/man/${program}.1)
-    add_custom_command(OUTPUT ${page} DEPENDS ${program}
-      COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/man
-      COMMAND ${AXIAL_HELP2MAN} --no-info --manual AxialMVS
-        --name "program of AxialMVS, dense 3D reconstruction under water and in air"
-        --output ${page} $<TARGET_FILE:${program}>
-      COMMENT "Writing the man page of ${program}" VERBATIM)
-    list(APPEND pages ${page})
+    axial_add_page(${program} $<TARGET_FILE:${program}> ${program})
+  endforeach()
+  # The scripts print their names as they are called.
+  file(GLOB modules CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/apps/pipeline/axial_pipeline/*.py)
+  set(links ${PROJECT_BINARY_DIR}/scripts)
+  file(MAKE_DIRECTORY ${links})
+  foreach(script reconstruct colmap-model)
+    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/apps/pipeline/${script} ${links}/axial-${script} SYMBOLIC)
+    axial_add_page(axial-${script} ${links}/axial-${script}
+      "${PROJECT_SOURCE_DIR}/apps/pipeline/${script};${modules}" --version-string ${PROJECT_VERSION})
   endforeach()
   add_custom_target(man ALL DEPENDS ${pages})
   install(FILES ${pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT programs)
@@ -105,31 +122,4 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/AxialMVSConfigVersion.cma
 install(FILES ${PROJECT_BINARY_DIR}/AxialMVSConfig.cmake ${PROJECT_BINARY_DIR}/AxialMVSConfigVersion.cmake
   DESTINATION ${package_dir} COMPONENT development)
 
-# The Debian packages.
-set(CPACK_GENERATOR DEB)
-set(CPACK_PACKAGE_NAME axialmvs)
-set(CPACK_PACKAGE_VENDOR AxialMVS)
-set(CPACK_PACKAGE_CONTACT "AxialMVS developers <axialmvs@localhost>")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "dense 3D reconstruction for cameras behind flat or dome ports")
-set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
-set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL programs)
-set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME axialmvs)
-set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-set(CPACK_DEBIAN_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# The scripts run python3 and colmap.
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3, colmap")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "snakemake, slurm-client")  # for axial-reconstruct --cluster
-if(AXIAL_PYTHON)
-  list(APPEND CPACK_COMPONENTS_ALL python)
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-axialmvs)
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-  # The module is for one version of Python.
-  math(EXPR next "${Python_VERSION_MINOR} + 1")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-    "python3-numpy, python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next})")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-matplotlib)
-endif()
-include(CPack)
+include(AxialPackages)

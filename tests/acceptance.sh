@@ -16,5 +16,5 @@ cmake --build --preset release --target InterfaceCOLMAP DensifyPointCloud Simula
   MapSurface CompareSurveys TransformScene ViewScene CalibrateHousing ReproducePaper ExtractFrames \
   FindTargets RestoreColors MeasureSurface ProjectLabels color_check color_baselines \
   map_check change_check held_out_check seam_check unseen_check \
-  drawn_boards dive_photograph matching_benchmark
+  drawn_boards dive_photograph matching_benchmark man axial_python
 exec python3 tests/acceptance/acceptance.py "$@"

@@ -1,19 +1,24 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs the Debian 12 packages that the build, the tests and the demo need. Does nothing and
-# prints nothing if all of them are installed.
+# Installs the Debian 12 packages that the build, the tests and the demo need. With --build, only those to build the
+# programs and their packages. Does nothing and prints nothing if all of them are installed.
 set -euo pipefail
 
 packages=(
   # to build
-  g++ cmake ninja-build git help2man
+  g++ cmake ninja-build git help2man python3
   libeigen3-dev libopencv-dev libjpeg-dev libpng-dev libtiff-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
   libnanoflann-dev libembree-dev libcgal-dev libmaxflow-dev libxxhash-dev libboost-dev libboost-program-options-dev
   libstb-dev libtinygltf-dev libceres-dev libsuitesparse-dev libgdal-dev libpugixml-dev libsqlite3-dev
   # to build the page of ViewScene without npm
   esbuild libjs-three
+  # for the Debian packages and the archive (packaging)
+  dpkg-dev file patchelf
+)
+# without --build
+others=(
   # to test
-  clang-format doxygen dpkg-dev file libgtest-dev libgmock-dev librapidcheck-dev
+  clang-format doxygen libgtest-dev libgmock-dev librapidcheck-dev
   clang libclang-rt-dev
   # for the Python package (AXIAL_PYTHON)
   pybind11-dev python3-dev python3-numpy
@@ -24,8 +29,10 @@ packages=(
   # to test the pipeline on a cluster
   slurmctld slurmd slurm-client munge
   # to run the pipeline
-  colmap python3 snakemake
+  colmap snakemake
 )
+
+[[ ${1:-} == --build ]] || packages+=("${others[@]}")
 
 missing=()
 for package in "${packages[@]}"; do

@@ -94,7 +94,8 @@ std::filesystem::path output_in_working_folder(const CommonOptions& common, cons
 // and to the log file, and returns 1. The line is "NAME: out of memory" if memory ran out,
 // otherwise "NAME: " and the exception's message (base/message.h).
 // A program that links this function also opens closed standard streams when it starts
-// (base/standard_streams.h), and reports uncaught exceptions (base/out_of_memory.h).
+// (base/standard_streams.h), and reports uncaught exceptions (base/out_of_memory.h). GDAL and PROJ
+// use their data beside the program, if there are any (base/bundled_data.h).
 int run_program(const std::string& name, const std::function<int()>& body);
 
 }  // namespace axial

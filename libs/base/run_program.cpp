@@ -6,6 +6,7 @@
 #include <iostream>
 #include <string_view>
 
+#include "base/bundled_data.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/log_file.h"
@@ -14,6 +15,7 @@
 #include "base/program.h"
 #include "base/quiet_errors.h"
 #include "base/standard_streams.h"
+#include "base/subprocess.h"
 
 namespace axial {
 namespace {
@@ -42,6 +44,7 @@ void say_error(const std::string& name, std::string_view what) {
 
 int run_program(const std::string& name, const std::function<int()>& body) {
   try {
+    use_bundled_data(program_folder().parent_path());
     start_log(name, line_start(STDOUT_FILENO));
     filter_errors();
     return body();

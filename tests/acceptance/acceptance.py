@@ -18,7 +18,7 @@ for module in ("clouds", "photographs", "times", "quality", "meshes", "unseen", 
                "whole_programs", "memory", "tiles", "survey_page", "still", "false_alarms", "dives",
                "random_dives", "lawnmower", "boards", "pair_costs", "control_draws", "control_strip", "target_surveys",
                "rig_surveys", "target_detection", "no_targets", "colors", "own_water", "color_controls",
-               "measured_plots"):
+               "measured_plots", "packages"):
     importlib.import_module(module)
 
 

@@ -13,7 +13,7 @@ from programs import main, write
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
-FOLDERS = ("refractive", "libs", "apps", "python", "tests")
+FOLDERS = ("refractive", "libs", "apps", "packaging", "python", "tests")
 LICENSES = {"refractive": "BSD-3-Clause"}  # of the other folders: GPL-3.0-or-later
 
 

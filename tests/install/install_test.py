@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Installs the build into an empty folder and builds the sample project against it. Makes the Debian
-package, unpacks it and runs its programs. Arguments: the build folder, the source
-folder, the version."""
+"""Installs the build into an empty folder and builds the sample project against it. Makes the Debian package, unpacks it
+and runs its programs. Makes a program independent of the system, as the archive has it. Arguments: the build folder,
+the source folder, the version."""
 
 import math
 import os
 import pathlib
 import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -14,6 +15,9 @@ import tempfile
 import unittest
 
 BUILD, SOURCE, VERSION = sys.argv[1:4]
+sys.path.insert(0, os.path.join(SOURCE, "packaging"))
+import archive  # noqa: E402
+
 PROGRAMS = ["AlignModel", "CalibrateHousing", "CompareSurveys", "DensifyPointCloud", "EvaluateReconstruction",
             "ExtractFrames", "FindTargets", "InterfaceCOLMAP", "MapSurface", "MeasureSurface", "ProjectLabels",
             "ReconstructMesh", "RefineMesh", "RefinePoses", "ReproducePaper", "RestoreColors", "SimulateUnderwater",
@@ -180,6 +184,54 @@ class DebianPackage(Case):
         names = output_of("dpkg-deb", "--contents", package)
         self.assertIn("./usr/lib/python3/dist-packages/axialmvs/__init__.py", names)
         self.assertNotIn("./usr/bin", names)
+
+
+class Archive(Case):
+    def test_a_program_loads_only_libraries_and_data_of_the_archive(self):
+        prefix = self.folder / "axialmvs"
+        (prefix / "bin").mkdir(parents=True)
+        shutil.copy(pathlib.Path(BUILD, "bin/MapSurface"), prefix / "bin")  # all programs would take a minute
+        archive.complete(prefix)
+        self.assertEqual(archive.loaded_from_outside(prefix), [])
+        documented = re.search(r"glibc (\d+)\.(\d+) is in", pathlib.Path(SOURCE, "docs/install.md").read_text())
+        self.assertLessEqual(archive.newest_glibc(prefix), tuple(map(int, documented.groups())))
+        self.assertIn("libgdal", (prefix / archive.NOTICES / "packages.txt").read_text())
+
+        # Without a library of the archive, its programs would take that of the system.
+        tiff = next((prefix / archive.LIBRARIES).glob("libtiff.so*"))
+        tiff.rename(self.folder / tiff.name)
+        self.assertIn(("MapSurface", tiff.name),
+                      [(program, os.path.basename(path)) for program, path in archive.loaded_from_outside(prefix)])
+        (self.folder / tiff.name).rename(tiff)
+        self.check_data(prefix)
+
+    def test_its_bytes_depend_on_the_contents_alone(self):
+        packed = []
+        for order in ("ab", "ba"):
+            prefix = self.folder / order / "axialmvs"
+            prefix.mkdir(parents=True)
+            for name in order:
+                (prefix / name).write_text(name)
+                os.utime(prefix / name, (len(packed), len(packed)))
+                (prefix / name).chmod(0o600 if packed else 0o644)
+            archive.pack(prefix, self.folder / f"{order}.tar.xz")
+            packed.append((self.folder / f"{order}.tar.xz").read_bytes())
+        self.assertEqual(packed[0], packed[1])
+        (prefix / "a").write_text("other")
+        archive.pack(prefix, self.folder / "other.tar.xz")
+        self.assertNotEqual((self.folder / "other.tar.xz").read_bytes(), packed[0])
+
+    def check_data(self, prefix):
+        """Programs look for coordinate systems in the archive: with an empty data base they know none."""
+        def said():
+            result = subprocess.run([prefix / "bin/MapSurface", "-i", self.folder / "none.mvs", "--epsg", "32633"],
+                                    capture_output=True, text=True, timeout=60)
+            self.assertEqual(result.returncode, 1)
+            return result.stderr
+
+        self.assertIn("none.mvs", said())
+        (prefix / "share/axialmvs/proj/proj.db").write_bytes(b"")
+        self.assertIn("--epsg 32633: is no coordinate reference system", said())
 
 
 if __name__ == "__main__":
