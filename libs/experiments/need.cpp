@@ -71,7 +71,7 @@ Json measure(const Chain& chain, const NeedCase& one, const EvaluationOptions& e
 
 std::vector<Part> parts(const Chain& chain, bool quick) {
   EvaluationOptions evaluation;
-  if (quick) evaluation.samples = 20000;
+  if (quick) evaluation.samples = 5000;
   const Json programs = programs_of_the_chain();
   std::vector<Part> all;
   for (const NeedCase& one : need_cases(quick)) {

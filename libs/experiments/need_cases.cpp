@@ -25,6 +25,7 @@ void shrink(SceneOptions& scene) {
   scene.height = 288;
   scene.views = 5;
   scene.coarseness = 4;
+  scene.samples = 1;
 }
 
 std::vector<NeedCase> all_cases() {

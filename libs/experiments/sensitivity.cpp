@@ -69,7 +69,8 @@ Study study(bool quick, const Distance& distance) {
     one.scene.height = 192;
     one.scene.views = 4;
     one.scene.coarseness = 4;
-    one.evaluation.samples = 20000;
+    one.scene.samples = 1;
+    one.evaluation.samples = 5000;
   }
   return one;
 }

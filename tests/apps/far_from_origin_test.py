@@ -234,7 +234,7 @@ class FarScene(Simulated):
 
     def refined(self, model, out, scale, *more):
         few = self.path("few", model)
-        colmap_text.copy(pathlib.Path(self.at(model, "sparse")), pathlib.Path(few), lambda number: number % 16 == 0)
+        colmap_text.copy(pathlib.Path(self.at(model, "sparse")), pathlib.Path(few), lambda number: number % 32 == 0)
         return self.succeeds("RefinePoses", "-i", few, "--lens", os.path.join(self.truth, "sparse"),
                              *self.port("water"), "-o", out, "--scale-from", scale, *more).stdout
 

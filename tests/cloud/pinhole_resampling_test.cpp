@@ -24,6 +24,10 @@ std::optional<Eigen::Vector3d> surface_at(const AnalyticScene& scene, const Came
   return pose.centre + hit->lambda * direction;
 }
 
+// The cameras see smooth surfaces and few edges, so every third pixel in each direction shows their
+// errors, and edges of one pixel are met at many places.
+constexpr int kPixelStep = 3;
+
 struct Errors {
   double mean = 0, largest = 0;
   std::size_t pixels = 0, of_field = 0;
@@ -31,8 +35,8 @@ struct Errors {
   double share() const { return static_cast<double>(pixels) / static_cast<double>(of_field); }
 };
 
-// For each pixel of the pinhole with a surface, compares the pixel at which the photograph is
-// sampled with the exact image of the surface point. Includes pixels at silhouettes.
+// For each kPixelStep-th pixel of the pinhole with a surface, compares the pixel at which the
+// photograph is sampled with the exact image of the surface point. Includes pixels at silhouettes.
 Errors lookup_errors(const AnalyticScene& scene, const CameraModel& photograph, const DepthMap& map,
                      const PinholeView& view, const cv::Mat1f& inverse) {
   const Pose pinhole = view.pose(map.pose);
@@ -40,8 +44,8 @@ Errors lookup_errors(const AnalyticScene& scene, const CameraModel& photograph, 
   Errors errors;
   std::visit(
       [&](const auto& camera) {
-        for (int y = 0; y < inverse.rows; ++y)
-          for (int x = 0; x < inverse.cols; ++x) {
+        for (int y = 0; y < inverse.rows; y += kPixelStep)
+          for (int x = 0; x < inverse.cols; x += kPixelStep) {
             const auto X = surface_at(scene, view.camera, pinhole, {x, y});
             if (!X) continue;
             const auto seen = camera.project(map.pose.to_camera(*X));
@@ -63,7 +67,11 @@ Errors lookup_errors(const AnalyticScene& scene, const CameraModel& photograph, 
   return errors;
 }
 
-class Resampling : public EachCamera {};
+class Resampling : public EachCamera {
+ protected:
+  // For properties that do not depend on the size of a pixel.
+  static CameraModel small() { return model().resized(120, 90); }
+};
 INSTANTIATE_TEST_SUITE_P(Cameras, Resampling, testing::ValuesIn(cameras()),
                          [](const auto& parameter) { return parameter.param.name; });
 
@@ -90,7 +98,7 @@ TEST_P(Resampling, LooksUpTheImageOfTheSurface) {
 // the point.
 TEST_P(Resampling, TakesObservationsAlong) {
   const AnalyticScene scene = sphere_before_plane();
-  const DepthMap map = exact_map(scene, model().resized(120, 90), tilted_pose());
+  const DepthMap map = exact_map(scene, small(), tilted_pose());
   const PinholeView view = pinhole_for(model(), kNear, kFar);
   const cv::Mat1f inverse = render_surface(map, view);
   const cv::Mat2f places = seen_by(model(), view, inverse, {0, inverse.rows});
@@ -127,18 +135,18 @@ TEST_P(Resampling, TakesObservationsAlong) {
 // Compares the resampled photograph with a photograph that the pinhole takes of the same scene. The
 // difference must be smaller than that of a photograph shifted by 0.3 pixels.
 TEST_P(Resampling, GivesThePhotographThatThePinholeWouldTake) {
-  const CameraModel small = model().resized(120, 90);
+  const CameraModel tiny = model().resized(80, 60);
   test::TexturedScene scene;
-  scene.cell = 0.08;
+  scene.cell = 0.12;  // 5 pixels: smooth noise that a shift changes
   const Pose pose{tilted_pose().rotation, {0.1, 0.05, 0.9}};
-  const test::RenderedView taken = render(scene, small, pose);
+  const test::RenderedView taken = render(scene, tiny, pose);
   DepthMap map;
-  map.camera = small, map.pose = pose, map.depth = taken.depth;
-  const PinholeView view = pinhole_for(small, kNear, kFar);
+  map.camera = tiny, map.pose = pose, map.depth = taken.depth;
+  const PinholeView view = pinhole_for(tiny, kNear, kFar);
   cv::Mat3b photograph;
   cv::merge(std::vector<cv::Mat>(3, taken.image), photograph);
   const cv::Mat1f surface = render_surface(map, view);
-  const PinholeImage image = resampled(photograph, {}, small, view, surface, filled(surface, 1.0f));
+  const PinholeImage image = resampled(photograph, {}, tiny, view, surface, filled(surface, 1.0f));
   const cv::Mat1b truth = render(scene, view.camera, view.pose(pose)).image;
   CameraModel off = view.camera;
   off.lens.cx += 0.3;
@@ -162,9 +170,10 @@ TEST_P(Resampling, PutsTheMapOntoTheSurface) {
   EXPECT_FALSE(result.camera.port);
   const refractive::PinholeCamera<double> pinhole(result.camera.lens);
   double worst = 0;
-  std::size_t pixels = 0, wrong_normals = 0;
-  for (int y = 0; y < result.height(); ++y)
-    for (int x = 0; x < result.width(); ++x) {
+  std::size_t compared = 0, pixels = 0, wrong_normals = 0;
+  for (int y = 0; y < result.height(); y += kPixelStep)
+    for (int x = 0; x < result.width(); x += kPixelStep) {
+      ++compared;
       if (result.depth(y, x) == 0) continue;
       const auto ray = pinhole.ray({x, y});
       const Eigen::Vector3d X =
@@ -182,7 +191,7 @@ TEST_P(Resampling, PutsTheMapOntoTheSurface) {
       EXPECT_LT(result.depth(y, x), result.max_depth);
       ++pixels;
     }
-  EXPECT_GT(pixels, result.depth.total() * 7 / 10);
+  EXPECT_GT(pixels, compared * 7 / 10);
   // The errors are those of a chord over one pixel of the sphere (4 mm where it is seen
   // perpendicularly), and depth differences of up to 1 % that are not treated as steps.
   EXPECT_LT(worst, 0.01);
@@ -191,26 +200,26 @@ TEST_P(Resampling, PutsTheMapOntoTheSurface) {
 
 TEST_P(Resampling, FillsHolesNearlyRight) {
   const AnalyticScene scene = plane();
-  DepthMap map = exact_map(scene, model(), tilted_pose());
-  const PinholeView view = pinhole_for(model(), kNear, kFar);
-  const cv::Rect hole(60, 50, 80, 60);
+  DepthMap map = exact_map(scene, small(), tilted_pose());
+  const PinholeView view = pinhole_for(small(), kNear, kFar);
+  const cv::Rect hole(30, 25, 40, 30);
   map.depth(hole) = 0.0f;
   const cv::Mat1f inverse = filled(render_surface(map, view), 1.0f);
   EXPECT_EQ(cv::countNonZero(inverse), static_cast<int>(inverse.total()));
-  const Errors errors = lookup_errors(scene, model(), map, view, inverse);
+  const Errors errors = lookup_errors(scene, small(), map, view, inverse);
   EXPECT_LT(errors.largest, 1.0);
 }
 
 TEST_P(Resampling, GivesTheSameForAnyNumberOfThreads) {
-  const DepthMap map = exact_map(sphere_before_plane(), model(), tilted_pose());
-  const PinholeView view = pinhole_for(model(), kNear, kFar);
+  const DepthMap map = exact_map(sphere_before_plane(), small(), tilted_pose());
+  const PinholeView view = pinhole_for(small(), kNear, kFar);
   const cv::Mat1f surface = render_surface(map, view);
-  cv::Mat3b photograph(model().height, model().width);
+  cv::Mat3b photograph(small().height, small().width);
   cv::randu(photograph, 0, 255);
   std::vector<PinholeImage> images;
   for (const unsigned threads : {1u, 4u}) {
     const ThreadLimit limit(threads);
-    images.push_back(resampled(photograph, {}, model(), view, surface, filled(surface, 1.0f)));
+    images.push_back(resampled(photograph, {}, small(), view, surface, filled(surface, 1.0f)));
   }
   EXPECT_EQ(cv::norm(images[0].color, images[1].color, cv::NORM_INF), 0);
   EXPECT_EQ(cv::norm(images[0].label, images[1].label, cv::NORM_INF), 0);
@@ -223,15 +232,14 @@ DepthMap step_map(const CameraModel& model) {
   AnalyticScene near = far;
   near.plane = {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(0, 0, 0.7)};
   DepthMap map = exact_map(far, model, {});
-  exact_map(near, model, {})
-      .depth(cv::Rect(80, 60, 80, 60))
-      .copyTo(map.depth(cv::Rect(80, 60, 80, 60)));
+  const cv::Rect middle(model.width / 3, model.height / 3, model.width / 3, model.height / 3);
+  exact_map(near, model, {}).depth(middle).copyTo(map.depth(middle));
   return map;
 }
 
 TEST_P(Resampling, JoinsNoSteps) {
-  const DepthMap map = step_map(model());
-  const PinholeView view = pinhole_for(model(), kNear, kFar);
+  const DepthMap map = step_map(small());
+  const PinholeView view = pinhole_for(small(), kNear, kFar);
   const cv::Mat1f inverse = render_surface(map, view);
   std::size_t near = 0, far = 0;
   for (int y = 0; y < inverse.rows; ++y)
@@ -241,8 +249,8 @@ TEST_P(Resampling, JoinsNoSteps) {
       EXPECT_LT(std::min(std::abs(z - 0.7), std::abs(z - 1.2)), 1e-4) << x << ' ' << y;
       ++(z < 1 ? near : far);
     }
-  EXPECT_GT(near, 4000u);
-  EXPECT_GT(far, 25000u);
+  EXPECT_GT(near, 1000u);
+  EXPECT_GT(far, 6250u);
 }
 
 // Seen from the side, the near square hides the plane behind it, independently of the drawing

@@ -260,9 +260,9 @@ TEST_P(FuseStrip, HearsNothingFromAMapWithoutDepths) {
 
 // A third map either sees through the ground or has other normals there.
 TEST_P(FuseStrip, WantsThreeWhereAThirdMapDisagrees) {
+  const std::size_t whole = points_of_two(strip().fused());
   for (const bool farther : {false, true}) {
     Strip strip = FuseStrip::strip();
-    const std::size_t whole = points_of_two(strip.fused());
     if (farther)
       strip.maps[2].depth *= 1.2;
     else

@@ -225,7 +225,7 @@ TEST_P(RulerErrors, AreCorrectedWithinTheStatedDeviations) {
   std::mt19937_64 random(7);
   Honesty numbers, scales, fixed_scales;
   for (unsigned draw = 1; draw <= 20; ++draw) {
-    const Bundle truth = true_survey(port, distance, draw, 150);
+    const Bundle truth = true_survey(port, distance, draw, 80);
     const Errors errors = drawn_errors(random);
     const Refined found = refined(truth, errors, "auto", false);
     const Uncertainty known = uncertainty(found.bundle, found.options.adjust);
@@ -289,7 +289,7 @@ TEST(MeasuredDistance, DoesNotBecomeNegative) {
   const Refined found = refined(truth, {.distance = 0.006}, "auto");
   EXPECT_GE(std::get<Flat>(*found.bundle.cameras[0].now().port).distance, 0);
   for (unsigned seed = 1; seed <= 4; ++seed) {
-    const Bundle other = true_survey(flat_port(0, 0), 0.7, seed);
+    const Bundle other = true_survey(flat_port(0, 0), 0.7, seed, 100);
     const Refined near = refined(other, {.distance = 0.001}, "auto");
     EXPECT_GE(std::get<Flat>(*near.bundle.cameras[0].now().port).distance, 0);
   }

@@ -184,7 +184,7 @@ TEST_F(ColmapDatabaseTest, SurvivesDamage) {
   std::ifstream in(file_(), std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   test::expect_damage_survived(
-      file_(), bytes, [](const fs::path& file) { read_colmap_database(file); }, 100, 2000);
+      file_(), bytes, [](const fs::path& file) { read_colmap_database(file); }, 100, 500);
 }
 
 }  // namespace

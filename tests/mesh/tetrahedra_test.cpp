@@ -100,7 +100,7 @@ TEST(RayWalk, VisitsTheTetrahedraAlongTheRayInTheirOrder) {
     const Eigen::Vector3d weights = sides.inverse() * (x - a);
     return weights.minCoeff() > 1e-9 && weights.sum() < 1 - 1e-9;
   };
-  for (std::uint32_t start = 0; start < 40; ++start) {
+  for (std::uint32_t start = 0; start < 40; start += 4) {
     const Eigen::Vector3d from = points[start].cast<double>(),
                           to = 0.3 * points[start + 50].cast<double>();
     const double length = (to - from).norm();
