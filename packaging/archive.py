@@ -69,11 +69,10 @@ def add_libraries(prefix):
     for name, path in sorted(libraries.items()):
         shutil.copyfile(path, folder / name)
     # RPATH of a program also serves the libraries of its libraries, and comes before LD_LIBRARY_PATH of the user. A
-    # library with a RUNPATH of its own does not use it.
-    for file, path in re.findall(r"^File: (.*)\n(?:(?!File: ).*\n)*?.*\(RUNPATH\).*\[(.*)\]",
-                                 output_of("readelf", "-d", *folder.iterdir()), re.M):
-        if path != "$ORIGIN":
-            output_of("patchelf", "--set-rpath", "$ORIGIN", file)
+    # library with a RUNPATH of its own does not use it, and the user's folders come before a RUNPATH.
+    for file in re.findall(r"^File: (.*)\n(?:(?!File: ).*\n)*?.*\(RUNPATH\)",
+                           output_of("readelf", "-d", *folder.iterdir()), re.M):
+        output_of("patchelf", "--force-rpath", "--set-rpath", "$ORIGIN", file)
     for program in programs:
         output_of("patchelf", "--force-rpath", "--set-rpath", f"$ORIGIN/../{LIBRARIES}", program)
     return [path.resolve() for path in libraries.values()]
@@ -114,6 +113,8 @@ def add_notices(prefix, files):
     owners = {}
     for line in found.splitlines():
         packages, _, path = line.partition(": ")
+        if packages.startswith("diversion by"):
+            continue
         owners[pathlib.Path(path).resolve()] = packages.split(", ")[0].split(":")[0]
     unowned = sorted(str(file) for file in files if file not in owners)
     if unowned:
@@ -147,12 +148,14 @@ def pack(prefix, archive):
     epoch = os.environ.get("SOURCE_DATE_EPOCH", EPOCH)
     tar = ["tar", "--create", "--sort=name", f"--mtime=@{epoch}", "--owner=0", "--group=0", "--numeric-owner",
            "--mode=u=rwX,go=rX", "--format=gnu", "-C", str(prefix.parent), prefix.name]
-    with subprocess.Popen(tar, stdout=subprocess.PIPE) as packed, open(partial, "wb") as out:
-        result = subprocess.run(["xz", "-6", "--threads=2", "--block-size=32MiB"], stdin=packed.stdout, stdout=out)
-    if packed.returncode != 0 or result.returncode != 0:
-        partial.unlink()
-        sys.exit(f"archive.py: {archive}: cannot be written")
-    partial.rename(archive)
+    try:
+        with subprocess.Popen(tar, stdout=subprocess.PIPE) as packed, open(partial, "wb") as out:
+            result = subprocess.run(["xz", "-6", "--threads=2", "--block-size=32MiB"], stdin=packed.stdout, stdout=out)
+        if packed.returncode != 0 or result.returncode != 0:
+            sys.exit(f"archive.py: {archive}: cannot be written")
+        partial.rename(archive)
+    finally:
+        partial.unlink(missing_ok=True)
 
 
 def version_of(build):

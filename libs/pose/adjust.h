@@ -135,7 +135,8 @@ using AdjustSink = std::function<void(const AdjustIteration&)>;
 
 // How the solver ended.
 struct AdjustReport {
-  // False: it stopped at max_iterations, and the last one lowered half the cost by 0.01 or more.
+  // False: it stopped at max_iterations, and the last one lowered half the cost by
+  // AdjustOptions::gain_of_outliers or more.
   bool converged = false;
   int iterations = 0;                       // including the evaluation of the start
   double initial_cost = 0, final_cost = 0;  // half the cost of adjust()

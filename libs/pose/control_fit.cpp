@@ -201,18 +201,20 @@ AdjustOptions without(AdjustOptions options, const Suspect& one) {
   return options;
 }
 
-// The length or place among `before` that nothing controls any more with `options`, which lacks one
-// of `before`; nothing if there is none.
-std::optional<Suspect> uncontrolled_now(std::span<const Suspect> before,
-                                        const AdjustOptions& options, const Bundle& bundle) {
+// The lengths and places among `before` that nothing controls any more with `options`, which lacks
+// one of `before`.
+std::vector<Suspect> uncontrolled_now(std::span<const Suspect> before, const AdjustOptions& options,
+                                      const Bundle& bundle) {
   constexpr double kRounding = 1e-3;
+  std::vector<Suspect> found;
   for (const Suspect& now : suspects(bundle, options)) {
     if (now.control > kLeastControl) continue;
     const auto same = std::ranges::find(before, now.name, &Suspect::name);
     // What was not controlled before, either, has lost nothing.
-    if (same != before.end() && same->control > 2 * std::max(now.control, kRounding)) return *same;
+    if (same != before.end() && same->control > 2 * std::max(now.control, kRounding))
+      found.push_back(*same);
   }
-  return {};
+  return found;
 }
 
 // The bundle, adjusted without a value.
@@ -228,7 +230,12 @@ Trial trial_without(const Suspect& one, const Bundle& bundle, const AdjustOption
   Trial trial{one, without(options, one), bundle};
   AdjustOptions adjusting = trial.options;
   adjusting.starts_close = true;
-  trial.cost = adjust(trial.bundle, adjusting, {}, context).final_cost;
+  context.info("Adjusts without {}, which may be wrong", one.name);
+  try {
+    trial.cost = adjust(trial.bundle, adjusting, {}, context).final_cost;
+  } catch (const Error&) {
+    trial.cost = std::numeric_limits<double>::infinity();  // the others need this value
+  }
   return trial;
 }
 
@@ -239,12 +246,29 @@ struct Verdict {
   std::optional<Suspect> rival;
 };
 
+constexpr std::size_t kMostTrials = 4;
+
+// Compares the best trial with those of the values that only its value controls.
+void judge_rivals(Verdict& verdict, std::span<const Suspect> found, const Bundle& bundle,
+                  const AdjustOptions& options, const Context& context) {
+  constexpr double kClear = kWrong * kWrong / 2;  // of half the cost
+  std::vector<Suspect> rivals = uncontrolled_now(found, verdict.best.options, bundle);
+  rivals.resize(std::min(rivals.size(), kMostTrials));
+  const double cost = verdict.best.cost;
+  for (const Suspect& rival : rivals) {
+    Trial trial = trial_without(rival, bundle, options, context);
+    if (trial.cost > cost + kClear) continue;
+    if (trial.cost >= cost - kClear)
+      verdict.rival = rival;
+    else if (trial.cost < verdict.best.cost)
+      verdict = {std::move(trial), {}};
+  }
+}
+
 // Which value is wrong; nothing if none deviates. `found`: the suspects. The largest deviation need
 // not be that of the wrong value: a wrong value that few others control draws them to itself.
 std::optional<Verdict> verdict_on(std::span<const Suspect> found, const Bundle& bundle,
                                   const AdjustOptions& options, const Context& context) {
-  constexpr std::size_t kMostTrials = 4;
-  constexpr double kClear = kWrong * kWrong / 2;  // of half the cost
   std::optional<Verdict> verdict;
   std::size_t trials = 0;
   for (const Suspect& one : found) {
@@ -252,12 +276,17 @@ std::optional<Verdict> verdict_on(std::span<const Suspect> found, const Bundle& 
     Trial trial = trial_without(one, bundle, options, context);
     if (!verdict || trial.cost < verdict->best.cost) verdict = Verdict{std::move(trial), {}};
   }
-  if (!verdict) return {};
-  verdict->rival = uncontrolled_now(found, verdict->best.options, bundle);
-  if (verdict->rival &&
-      trial_without(*verdict->rival, bundle, options, context).cost > verdict->best.cost + kClear)
-    verdict->rival.reset();
+  if (!verdict || !std::isfinite(verdict->best.cost)) return {};
+  judge_rivals(*verdict, found, bundle, options, context);
   return verdict;
+}
+
+// Which value is wrong besides the two that contradict each other: it deviates without the best of
+// them, too.
+std::optional<Verdict> verdict_besides(const Verdict& pair, const Context& context) {
+  std::vector<Suspect> found = suspects(pair.best.bundle, pair.best.options);
+  std::erase_if(found, [&](const Suspect& one) { return one.name == pair.rival->name; });
+  return verdict_on(found, pair.best.bundle, pair.best.options, context);
 }
 
 // Removes lengths with another scale than most.
@@ -374,19 +403,10 @@ std::vector<std::string> leave_out_outliers(const Bundle& bundle, AdjustOptions&
 bool leave_out_worst(const Bundle& bundle, AdjustOptions& options, std::vector<std::string>& lines,
                      const Context& context) {
   const std::vector<Suspect> found = suspects(bundle, options);
-  const std::optional<Verdict> verdict = verdict_on(found, bundle, options, context);
-  if (!verdict) return false;
-  const Suspect* wrong = &verdict->best.one;
-  std::vector<Suspect> still;
-  if (verdict->rival) {
-    // Another value may be wrong, too. It then deviates without the best one as well.
-    still = suspects(verdict->best.bundle, verdict->best.options);
-    const auto other = std::ranges::find_if(still, [&](const Suspect& one) {
-      return is_wrong(one) && one.name != verdict->rival->name;
-    });
-    if (other == still.end()) return false;
-    wrong = &*std::ranges::find(found, other->name, &Suspect::name);
-  }
+  std::optional<Verdict> verdict = verdict_on(found, bundle, options, context);
+  if (verdict && verdict->rival) verdict = verdict_besides(*verdict, context);
+  if (!verdict || verdict->rival) return false;
+  const auto wrong = std::ranges::find(found, verdict->best.one.name, &Suspect::name);
   lines.push_back(wrong->line + "; it is left out");
   options = without(std::move(options), *wrong);
   return true;
@@ -394,11 +414,14 @@ bool leave_out_worst(const Bundle& bundle, AdjustOptions& options, std::vector<s
 
 std::vector<std::string> contradictions(const Bundle& bundle, const AdjustOptions& options,
                                         const Context& context) {
-  const std::vector<Suspect> found = suspects(bundle, options);
-  const std::optional<Verdict> verdict = verdict_on(found, bundle, options, context);
-  if (!verdict || !verdict->rival) return {};
-  return {fmt::format("{}; {}: the two contradict each other, and both are kept",
-                      verdict->best.one.line, verdict->rival->line)};
+  std::vector<std::string> lines;
+  std::optional<Verdict> verdict = verdict_on(suspects(bundle, options), bundle, options, context);
+  while (verdict && verdict->rival) {
+    lines.push_back(fmt::format("{}; {}: the two contradict each other, and both are kept",
+                                verdict->best.one.line, verdict->rival->line));
+    verdict = verdict_besides(*verdict, context);
+  }
+  return lines;
 }
 
 }  // namespace axial::pose

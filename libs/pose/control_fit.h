@@ -59,13 +59,14 @@ std::vector<std::string> leave_out_outliers(const Bundle& bundle, AdjustOptions&
 
 // Removes the wrong length or place, and adds a line to `lines`. Values with deviations (KnownFit)
 // above 4 are suspects. The wrong one is the suspect without which the adjusted bundle has the
-// smallest cost. Two values contradict each other if nothing else controls the second without the
-// first, and if the cost without either is nearly the same: nothing tells which of them is wrong,
-// and both stay. Returns whether a value was removed; the bundle must then be adjusted again.
+// smallest cost, of at most four. Two values contradict each other if nothing else controls the
+// second without the first, and if the cost without either is nearly the same: nothing tells which
+// of them is wrong, and both stay. Returns whether a value was removed; the bundle must then be
+// adjusted again.
 bool leave_out_worst(const Bundle& bundle, AdjustOptions& options, std::vector<std::string>& lines,
                      const Context& context = {});
 
-// A line for two values that contradict each other, if there are such values.
+// A line for each pair of values that contradict each other.
 std::vector<std::string> contradictions(const Bundle& bundle, const AdjustOptions& options,
                                         const Context& context = {});
 

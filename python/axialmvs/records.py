@@ -89,9 +89,9 @@ class MapPlace:
     pixel: float  # width of a pixel [m]
 
     def places(self, rows, columns) -> np.ndarray:
-        """The centres of pixels in the map: (..., 2)."""
-        return np.stack([self.left + (np.asarray(columns) + 0.5) * self.pixel,
-                         self.top - (np.asarray(rows) + 0.5) * self.pixel], axis=-1)
+        """The centres of pixels in the map: (..., 2). Rows and columns are broadcast."""
+        rows, columns = np.broadcast_arrays(rows, columns)
+        return np.stack([self.left + (columns + 0.5) * self.pixel, self.top - (rows + 0.5) * self.pixel], axis=-1)
 
 
 @dataclass(eq=False)

@@ -8,12 +8,14 @@
 #include "axial/compare.h"
 #include "axial/map.h"
 #include "base/error.h"
+#include "base/naming.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "compare/registration.h"
 #include "geometry/faces.h"
 #include "geometry/posed_camera.h"
 #include "map/map_block.h"
+#include "map/up_direction.h"
 #include "map/world_axes.h"
 #include "scene/check_mesh.h"
 #include "scene/marked_faces.h"
@@ -24,6 +26,7 @@
 namespace axial::python {
 namespace {
 
+namespace fs = std::filesystem;
 using py::literals::operator""_a;
 
 // The directions of the axes of a map in the world: rows of `axes`. [map] = axes * [world] +
@@ -42,7 +45,7 @@ void add_up(Keywords& keywords, std::optional<Eigen::Vector3d>& up) {
     if (value.is_none()) return;
     up = vector_argument(py::reinterpret_borrow<py::object>(value), "up");
     if (!(up->norm() > 0) || !up->allFinite())
-      fail("{}: must be a direction, other than 0", setting("up"));
+      fail("{} {}: must be a direction, other than 0", setting("up"), map::up_text(*up));
   });
 }
 
@@ -137,20 +140,41 @@ struct Comparing {
 };
 
 // The photographs of the scene of a survey in `frame`; None: not known.
-std::vector<geometry::PosedCamera> photos_of(const py::object& scene, const LocalFrame& frame) {
+std::vector<geometry::PosedCamera> photos_of(const py::object& scene, const char* name,
+                                             const LocalFrame& frame) {
   if (scene.is_none()) return {};
   const auto fields = scene.cast<py::dict>();
   Scene known = to_scene(fields);
   enter({frame.origin - frame_of(fields).origin}, known);
-  return geometry::posed_cameras(known);
+  std::vector<geometry::PosedCamera> photos = geometry::posed_cameras(known);
+  if (photos.empty()) fail("{}: has no calibrated image", setting(name));
+  return photos;
 }
 
-Mesh shape_of(const py::dict& fields, const LocalFrame& frame) {
+Mesh shape_of(const py::dict& fields, const fs::path& name, const LocalFrame& frame) {
   Mesh mesh = to_mesh(fields);
-  check_mesh(mesh);
+  naming(name, [&] { check_mesh(mesh); });
   remove_marked_faces(mesh);
+  if (mesh.faces.empty()) fail_in(name, "the mesh has no faces, or all are marked as unseen");
   move_positions(frame_of(fields), frame, mesh.vertices);
   return mesh;
+}
+
+// As CompareSurveys: z for coordinates far from the origin, which are those of a reference system.
+Eigen::Vector3d upward(const std::optional<Eigen::Vector3d>& wanted, const LocalFrame& frame,
+                       const Mesh& before) {
+  if (wanted) return *wanted;
+  if (!frame.is_world()) return Eigen::Vector3d::UnitZ();
+  return compare::upward_direction(before, geometry::mean_normal(before));
+}
+
+// Error if a map would show the far side of a survey: what came would count as gone.
+void check_up(const Eigen::Vector3d& up, const Mesh& mesh, const fs::path& name) {
+  if (map::shows_far_side(up, geometry::mean_normal(mesh)))
+    fail(
+        "{} {}: points away from the side to which the faces of {} are turned, so that what came "
+        "would count as gone",
+        setting("up"), map::up_text(up), name.string());
 }
 
 py::dict region_fields(const compare::Region& region) {
@@ -195,15 +219,16 @@ py::dict compare_surveys(const py::dict& before_fields, const py::dict& after_fi
   known.take(keywords, "compare_surveys");
   comparing.take_sigmas();
   const LocalFrame frame = frame_of(before_fields);
-  const Mesh before = shape_of(before_fields, frame), after = shape_of(after_fields, frame);
   compare::CompareOptions& options = comparing.options;
-  options.photos.before = photos_of(scene_before, frame);
-  options.photos.after = photos_of(scene_after, frame);
+  const Mesh before = shape_of(before_fields, options.name_before, frame),
+             after = shape_of(after_fields, options.name_after, frame);
+  options.photos.before = photos_of(scene_before, "scene_before", frame);
+  options.photos.after = photos_of(scene_after, "scene_after", frame);
   compare::Comparison found;
   run_stage(controls, [&](const Context& context) {
-    const Eigen::Vector3d up =
-        comparing.up ? *comparing.up
-                     : compare::upward_direction(before, geometry::mean_normal(before));
+    const Eigen::Vector3d up = upward(comparing.up, frame, before);
+    check_up(up, before, options.name_before);
+    check_up(up, after, options.name_after);
     found =
         compare::compare_surveys(before, after, map::frame_with_up(up, frame), options, context);
   });

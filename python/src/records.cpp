@@ -138,9 +138,15 @@ TexturedMesh to_textured_mesh(const py::dict& fields) {
   const Array<float> uv = array_argument<float>(fields["uv"], "uv", {kAny, 3, 2});
   mesh.uv = items_argument<TexturedMesh::Corners>(uv.attr("reshape")(-1, 6), "uv");
   mesh.texture_of = items_of<std::uint32_t>(fields, "texture_of");
+  for (const auto& [name, count] :
+       {std::pair("uv", mesh.uv.size()), std::pair("texture_of", mesh.texture_of.size())})
+    if (count != mesh.mesh.faces.size())
+      throw py::value_error(
+          fmt::format("{}: has {} items, but must have {}", name, count, mesh.mesh.faces.size()));
   for (const py::handle& texture : fields["textures"]) {
     const auto rgb =
         image_argument<cv::Vec3b>(py::reinterpret_borrow<py::object>(texture), "textures");
+    if (rgb.empty()) throw py::value_error("textures: has a texture without pixels");
     cv::cvtColor(rgb, mesh.textures.emplace_back(), cv::COLOR_RGB2BGR);
   }
   return mesh;

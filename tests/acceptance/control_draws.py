@@ -44,7 +44,7 @@ def reef(base, seed):
 def posed(data, features=8192):
     """The folder of `reconstruct` up to the poses, with targets and the right numbers of lens and port. `features`: the
     largest number in a photograph."""
-    out = data.parent / f"{data.name}-poses"
+    out = data.parent / f"{data.name}-poses-{features}"
     if not (out / "refined" / "report.json").exists():
         brought = as_measured(data, data.parent / f"{data.name}-right")
         brought.options = ("--targets", "find", "--find-targets=--families circular12",

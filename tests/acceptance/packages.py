@@ -150,7 +150,7 @@ def debian_packages(work):
     found = subprocess.run(["lintian", "--allow-root", "--fail-on", "error,warning", *packages], text=True,
                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if found.returncode != 0:
-        return found.stdout.splitlines()[0], False
+        return found.stdout or f"lintian ends with {found.returncode}", False
     before = system.size()
     last = (ROOT / "packaging/Dockerfile").read_text().replace("\\\n", " ").split("\nFROM ")[-1]
     for command in re.findall(r"^RUN (?:--\S+ )*(.*)", last, re.M):

@@ -200,13 +200,13 @@ TEST_P(Resampling, PutsTheMapOntoTheSurface) {
 
 TEST_P(Resampling, FillsHolesNearlyRight) {
   const AnalyticScene scene = plane();
-  DepthMap map = exact_map(scene, small(), tilted_pose());
-  const PinholeView view = pinhole_for(small(), kNear, kFar);
-  const cv::Rect hole(30, 25, 40, 30);
+  DepthMap map = exact_map(scene, model(), tilted_pose());
+  const PinholeView view = pinhole_for(model(), kNear, kFar);
+  const cv::Rect hole(60, 50, 80, 60);
   map.depth(hole) = 0.0f;
   const cv::Mat1f inverse = filled(render_surface(map, view), 1.0f);
   EXPECT_EQ(cv::countNonZero(inverse), static_cast<int>(inverse.total()));
-  const Errors errors = lookup_errors(scene, small(), map, view, inverse);
+  const Errors errors = lookup_errors(scene, model(), map, view, inverse);
   EXPECT_LT(errors.largest, 1.0);
 }
 

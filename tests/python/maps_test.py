@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """texture_mesh(), map_surface(), compare_surveys() and textured meshes of the Python package."""
 
+import pathlib
+import tempfile
 import unittest
 
 import numpy as np
@@ -125,8 +127,30 @@ class Changes(unittest.TestCase):
         self.assertEqual(raised.exception.setting, "pixel")
         with self.assertRaisesRegex(TypeError, "map_surface.* 'gsd'"):
             axialmvs.map_surface(before, pixel=0.1, gsd=1)
-        with self.assertRaisesRegex(ValueError, "uv"):
-            axialmvs.map_surface(axialmvs.TexturedMesh(**vars(before), uv=np.zeros((1, 2))), pixel=0.1)
+        with self.assertRaises(axialmvs.Error) as raised:
+            axialmvs.compare_surveys(before, after, up=(0, 0, -1))  # what came would count as gone
+        self.assertEqual(raised.exception.setting, "up")
+        with self.assertRaisesRegex(axialmvs.Error, "scene_after: has no calibrated image"):
+            axialmvs.compare_surveys(before, after, scene_after=axialmvs.Scene([]))
+        after.unseen = np.ones(len(after.faces), np.uint8)
+        with self.assertRaisesRegex(axialmvs.Error, "the later survey: .* marked as unseen"):
+            axialmvs.compare_surveys(before, after)
+
+    def test_wrong_textures_are_named(self):
+        mesh, _ = self.surveys()
+        count = len(mesh.faces)
+        textured = lambda uv, texture_of, texture: axialmvs.TexturedMesh(
+            **vars(mesh), uv=np.zeros(uv), texture_of=np.zeros(texture_of, int), textures=[np.zeros(texture, np.uint8)])
+        good = (count, 3, 2), count, (4, 4, 3)
+        axialmvs.map_surface(textured(*good), pixel=0.1)
+        for k, wrong, message in ((0, (1, 2), "uv: "), (0, (count - 1, 3, 2), "uv: has"),
+                                  (1, count - 1, "texture_of: has"), (2, (0, 0, 3), "textures: ")):
+            given = good[:k] + (wrong,) + good[k + 1:]
+            with self.assertRaisesRegex(ValueError, message):
+                axialmvs.map_surface(textured(*given), pixel=0.1)
+        mesh.unseen = np.zeros(3, np.uint8)
+        with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(axialmvs.Error, "marks of unseen"):
+            axialmvs.write_textured_mesh(pathlib.Path(folder, "mesh.ply"), textured(*good))
 
 
 if __name__ == "__main__":

@@ -42,6 +42,9 @@ void check(const TexturedMesh& mesh, const std::string& file) {
   if (mesh.uv.size() != faces || mesh.texture_of.size() != faces)
     fail_in(file, "the mesh has {} faces, {} texture coordinates and {} texture numbers", faces,
             mesh.uv.size(), mesh.texture_of.size());
+  if (!mesh.mesh.unseen.empty() && mesh.mesh.unseen.size() != faces)
+    fail_in(file, "the mesh has {} faces, but {} marks of unseen faces", faces,
+            mesh.mesh.unseen.size());
   for (std::size_t f = 0; f < faces; ++f) {
     if (mesh.texture_of[f] >= mesh.textures.size())
       fail_in(file, "face {} has texture {}, but there are {}", f, mesh.texture_of[f],

@@ -53,7 +53,8 @@ std::vector<std::filesystem::path> textured_files(const std::filesystem::path& p
 // `frame` is not the world, its origin is written too: PLY has a comment "geo_offset X Y Z", OBJ a
 // comment "# geo_offset X Y Z", and glTF a key geo_offset in the extras of its node.
 //
-// Error if uv or texture_of does not have one entry for each face, if an index is out of range, if
+// Error if uv, texture_of or Mesh::unseen, unless it is empty, does not have one entry for each
+// face, if an index is out of range, if
 // a vertex or a texture coordinate is not finite, if a GLB would be larger than 4 GiB, or if a file
 // cannot be written.
 void write_textured_mesh(const std::filesystem::path& path, const TexturedMesh& mesh,
