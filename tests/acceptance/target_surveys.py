@@ -81,8 +81,8 @@ def measure(seed, base=BASE):
 HEAD = "| seed | common plates | registration off by | volume that came | volume that went |\n|---|---|---|---|---|"
 
 
-@point(f"two surveys with the same plates, from raw photographs: registration within {1e3 * LARGEST:.0f} mm, volumes of "
-       f"what changed within {VOLUME} %")
+@point(f"two surveys with the same plates, from raw photographs: registration within {1e3 * LARGEST:.0f} mm, volumes "
+       f"of what changed within {VOLUME} %")
 def target_surveys(work):
     found = [measure(seed, work) for seed in SEEDS]
     return "\n".join([HEAD, *(row for row, _ in found)]), all(good for _, good in found)
