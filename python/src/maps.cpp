@@ -60,7 +60,9 @@ Pixels pixels_of(const map::MapContent& content, const Context& context) {
   constexpr int kBlock = 512;
   context.memory().require(map::bytes_of_samples(content), "the width of a pixel in texels");
   const int samples = map::samples_per_pixel(content);
-  const std::uint64_t result = static_cast<std::uint64_t>(content.grid.pixels()) * 9;
+  constexpr std::uint64_t kBytes =
+      sizeof(float) + sizeof(cv::Vec4b) + 1;  // of a pixel of the result
+  const std::uint64_t result = static_cast<std::uint64_t>(content.grid.pixels()) * kBytes;
   const auto fixed = context.memory().reserve(
       result + map::FaceBins::bytes(content.mesh.mesh, content.frame, content.grid, kBlock));
   const std::size_t at_once =
@@ -92,7 +94,6 @@ py::dict map_surface(const py::dict& fields, const py::dict& keywords) {
   add_up(known, up);
   controls.add_to(known);
   known.take(keywords, "map_surface");
-  if (pixel == 0) fail("{}: the width of a pixel [m] is needed", setting("pixel"));
   TexturedMesh mesh = to_textured_mesh(fields);
   check_mesh(mesh.mesh);
   remove_marked_faces(mesh);
