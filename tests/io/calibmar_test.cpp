@@ -147,6 +147,9 @@ TEST_F(Calibmar, WrongFilesAreNamed) {
   EXPECT_THAT(error_of(with("0, 0, 1, ", "0, 0, -1, ")), HasSubstr("points backwards"));
   EXPECT_THAT(error_of(with("1920", "1920.5")), HasSubstr("width has '1920.5'"));
   EXPECT_THAT(error_of(with("1920", "[1, 2]")), HasSubstr("width has 2 numbers"));
+  EXPECT_THAT(error_of(with("1920", "{a: 2}")), HasSubstr("width has 0 numbers"));
+  EXPECT_THAT(error_of(with("960, ", "960, [540.25], ")), HasSubstr("parameters has '[...]'"));
+  EXPECT_THAT(error_of("- model: PINHOLE\n"), HasSubstr("line 1: a list instead of 'key: value'"));
   EXPECT_THAT(error_of(with("OPENCV", "LENS")), HasSubstr("unknown model 'LENS'"));
   EXPECT_THAT(error_of(with("960, ", "")), HasSubstr("has 7 parameters, expected 8"));
   EXPECT_THAT(error_of("hello\n"), HasSubstr("line 1: 'hello' is not 'key: value'"));

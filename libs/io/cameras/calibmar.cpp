@@ -2,13 +2,14 @@
 #include "io/cameras/calibmar.h"
 
 #include <fmt/ranges.h>
+#include <yaml-cpp/yaml.h>
 
 #include <map>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_extension.h"
-#include "private/bytes/text_reader.h"
+#include "base/parse_number.h"
 #include "private/colmap/colmap_parts.h"
 
 namespace axial::io {
@@ -16,30 +17,20 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-std::string_view without_comment(std::string_view line) {
-  for (std::size_t i = 0; i < line.size(); ++i)
-    if (line[i] == '#' && (i == 0 || kBlanks.find(line[i - 1]) != std::string_view::npos))
-      return line.substr(0, i);
-  return line;
-}
-
-std::string_view unquoted(std::string_view text) {
-  const bool quoted = text.size() >= 2 && text.front() == text.back() &&
-                      (text.front() == '"' || text.front() == '\'');
-  return quoted ? text.substr(1, text.size() - 2) : text;
-}
-
-// The subset of YAML that these files use: a key with one word or with a list, in brackets or with
-// a dash before each item.
+// The keys of a file with their values, which are a word or a list of words. A map has no words.
 class YamlKeys {
  public:
   explicit YamlKeys(const std::filesystem::path& path) : file_(path.string()) {
     constexpr std::uintmax_t kLargest = 1u << 20;
-    std::string text = read_file(path, kLargest);
-    if (!text.ends_with('\n')) text += '\n';  // some writers omit the last newline
-    TextReader reader(text, file_);
-    while (const auto line = reader.line()) add(without_comment(line->rest()), line->where());
-    if (open_) fail_in(file_, "the list of {} has no end: the file is truncated", key_);
+    const YAML::Node root = parsed(read_file(path, kLargest));
+    if (root.IsScalar()) fail_in(where(root), "'{}' is not 'key: value'", root.Scalar());
+    if (root.IsSequence()) fail_in(where(root), "a list instead of 'key: value'");
+    for (const auto& entry : root) {
+      const YAML::Node& key = entry.first;
+      if (!key.IsScalar()) continue;
+      if (!values_.try_emplace(key.Scalar(), words_of(entry.second)).second)
+        fail_in(where(key), "key '{}' occurs twice", key.Scalar());
+    }
   }
 
   bool has(const std::string& key) const { return values_.contains(key); }
@@ -75,44 +66,29 @@ class YamlKeys {
   }
 
  private:
-  void add(std::string_view line, const std::string& where) {
-    line = trimmed(line);
-    if (line.empty() || line == "---" || line == "...") return;
-    if (open_) return add_listed(line, where);
-    if (line.front() == '-' && !key_.empty() && (line.size() == 1 || line[1] == ' '))
-      return add_word(line.substr(1));
-    const std::size_t colon = line.find(':');
-    if (colon == std::string_view::npos) fail_in(where, "'{}' is not 'key: value'", line);
-    key_ = unquoted(trimmed(line.substr(0, colon)));
-    if (!values_.try_emplace(key_).second) fail_in(where, "key '{}' occurs twice", key_);
-    const std::string_view value = trimmed(line.substr(colon + 1));
-    if (!value.starts_with('[')) return add_word(value);
-    open_ = true;
-    add_listed(value.substr(1), where);
-  }
-
-  void add_listed(std::string_view text, const std::string& where) {
-    const std::size_t end = text.find(']');
-    if (end != std::string_view::npos) {
-      if (!trimmed(text.substr(end + 1)).empty())
-        fail_in(where, "unexpected '{}' after the list of {}", trimmed(text.substr(end + 1)), key_);
-      open_ = false;
-      text = text.substr(0, end);
+  YAML::Node parsed(const std::string& text) const {
+    try {
+      return YAML::Load(text);
+    } catch (const YAML::Exception& error) {
+      fail_in(where(error.mark), "no YAML, or truncated: {}", error.msg);
     }
-    for (std::size_t comma = text.find(','); comma != std::string_view::npos;
-         comma = text.find(',')) {
-      add_word(text.substr(0, comma));
-      text.remove_prefix(comma + 1);
-    }
-    add_word(text);
   }
 
-  void add_word(std::string_view word) {
-    if (const auto bare = unquoted(trimmed(word)); !bare.empty()) values_[key_].emplace_back(bare);
+  std::string where(const YAML::Mark& mark) const {
+    return fmt::format("{}: line {}", file_, mark.line + 1);
+  }
+  std::string where(const YAML::Node& node) const { return where(node.Mark()); }
+
+  static Words words_of(const YAML::Node& value) {
+    Words words;
+    if (value.IsScalar() && !value.Scalar().empty()) words.push_back(value.Scalar());
+    if (value.IsSequence())
+      for (const YAML::Node& item : value)
+        words.push_back(item.IsScalar() ? item.Scalar() : "[...]");  // no number
+    return words;
   }
 
-  std::string file_, key_;
-  bool open_ = false;  // within brackets
+  std::string file_;
   std::map<std::string, Words> values_;
 };
 
