@@ -82,8 +82,7 @@ void add_blocks(Terrain& terrain, RandomSequence& random) {
     block.radii = {random.between(0.05, 0.10), random.between(0.04, 0.07),
                    random.between(0.03, 0.05)};
     block.centre = {x, y, terrain.floor.at(x, y) + random.between(0.02, 0.07)};
-    block.turn = Eigen::AngleAxisd(random.between(0, 6.28), Eigen::Vector3d::UnitZ()) *
-                 Eigen::AngleAxisd(random.between(-0.7, 0.7), Eigen::Vector3d::UnitX());
+    block.turn = random_turn(0.7, random);
     block.roughness = 0.25;
     block.seed = random.seed();
     terrain.blobs.push_back(block);
@@ -106,9 +105,10 @@ void make_amphora(Preset& preset, std::uint32_t seed, int views) {
   vessel.size = 0.085;
   vessel.foot = {-0.09, random.between(-0.03, 0.03), 0};
   vessel.foot.z() = terrain.floor.at(vessel.foot.x(), vessel.foot.y()) + 0.02;
+  const double roll = random.between(0.5, 1.0), lean = random.between(0.6, 0.9);
   vessel.turn = Eigen::AngleAxisd(random.between(-0.4, 0.4), Eigen::Vector3d::UnitZ()) *
-                Eigen::AngleAxisd(random.between(0.6, 0.9), Eigen::Vector3d::UnitY()) *
-                Eigen::AngleAxisd(random.between(0.5, 1.0), Eigen::Vector3d::UnitZ());
+                Eigen::AngleAxisd(lean, Eigen::Vector3d::UnitY()) *
+                Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ());
   add_vessel(terrain, vessel, random);
   add_blocks(terrain, random);
   add_arch(terrain, -0.22, 0.18, 0.10, random);

@@ -49,9 +49,9 @@ void make_transect(Preset& preset, std::uint32_t seed, int views) {
   terrain.skirt = 8;
   scatter(terrain, 4 * views, {terrain.half_width, terrain.half_height}, 0, {0.05, 0.22}, random);
   for (int i = 0; i < views; ++i) {
-    const Eigen::Vector3d centre(random.between(-0.03, 0.03),
-                                 step * (i - 0.5 * (views - 1)) + random.between(-0.03, 0.03),
-                                 kCameraHeight + random.between(-0.04, 0.04));
+    const Eigen::Vector3d centre =
+        Eigen::Vector3d(0, step * (i - 0.5 * (views - 1)), kCameraHeight) +
+        random.within(Eigen::Vector3d(0.03, 0.03, 0.04));
     View view = look_at(centre, centre - Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
     shake(view, 1, random);
     preset.views.push_back(view);

@@ -29,6 +29,13 @@ View look_at(const Eigen::Vector3d& centre, const Eigen::Vector3d& target,
   return view;
 }
 
+Eigen::Matrix3d random_turn(double most_tilt, RandomSequence& random) {
+  const double tilt = random.between(-most_tilt, most_tilt), turn = random.between(0, 6.28);
+  return (Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
 void shake(View& view, double degrees, RandomSequence& random) {
   for (int axis = 0; axis < 3; ++axis) {
     const double angle = random.between(-degrees, degrees) * kRadians;
@@ -43,8 +50,7 @@ Blob boulder(const Floor& floor, double x, double y, double radius, RandomSequen
   Blob blob;
   blob.radii = {radius * random.between(0.8, 1.25), radius * random.between(0.8, 1.25),
                 radius * random.between(0.65, 1.0)};
-  blob.turn = Eigen::AngleAxisd(random.between(0, 6.28), Eigen::Vector3d::UnitZ()) *
-              Eigen::AngleAxisd(random.between(-0.4, 0.4), Eigen::Vector3d::UnitX());
+  blob.turn = random_turn(0.4, random);
   blob.centre = {x, y, floor.at(x, y) + random.between(0.0, 0.35) * blob.radii.z()};
   blob.roughness = random.between(0.2, 0.34);
   blob.seed = random.seed();
@@ -62,8 +68,7 @@ void add_mushroom(Terrain& terrain, double x, double y, double size, RandomSeque
   stalk.seed = random.seed();
   Blob cap;
   cap.radii = {random.between(0.85, 1.05) * size, random.between(0.75, 0.95) * size, 0.38 * size};
-  cap.turn = Eigen::AngleAxisd(random.between(0, 6.28), Eigen::Vector3d::UnitZ()) *
-             Eigen::AngleAxisd(random.between(-0.25, 0.25), Eigen::Vector3d::UnitX());
+  cap.turn = random_turn(0.25, random);
   cap.centre = {x + random.between(-0.15, 0.15) * size, y + random.between(-0.15, 0.15) * size,
                 ground + 1.05 * size};
   cap.roughness = 0.24;
@@ -103,9 +108,9 @@ void add_two_rows(Preset& preset, int views, double height, RandomSequence& rand
     const int row = i / columns;
     // Forth along one row, back along the other.
     const int column = row == 0 ? i : 2 * columns - 1 - i;
-    const Eigen::Vector3d centre(0.5 * (column - 0.5 * (columns - 1)) + random.between(-0.06, 0.06),
-                                 0.55 * (row - 0.5) + random.between(-0.06, 0.06),
-                                 height + random.between(-0.12, 0.12));
+    const Eigen::Vector3d centre =
+        Eigen::Vector3d(0.5 * (column - 0.5 * (columns - 1)), 0.55 * (row - 0.5), height) +
+        random.within(Eigen::Vector3d(0.06, 0.06, 0.12));
     View view = look_at(centre, centre - Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
     shake(view, 6, random);
     preset.views.push_back(view);
@@ -120,7 +125,8 @@ void add_two_rings(Preset& preset, int views, double range, RandomSequence& rand
     const double around = 2 * std::numbers::pi * step + random.between(-0.06, 0.06);
     const double elevation = ((low ? 57 : 77) + random.between(-2, 2)) * kRadians;
     const double away = range + random.between(-0.03, 0.03);
-    const Eigen::Vector3d target(random.between(-0.03, 0.03), random.between(-0.03, 0.03), 0.06);
+    const Eigen::Vector2d aside = random.within(Eigen::Vector2d(0.03, 0.03));
+    const Eigen::Vector3d target(aside.x(), aside.y(), 0.06);
     const Eigen::Vector3d offset(std::cos(elevation) * std::cos(around),
                                  std::cos(elevation) * std::sin(around), std::sin(elevation));
     View view = look_at(target + away * offset, target, Eigen::Vector3d::UnitZ());

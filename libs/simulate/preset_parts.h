@@ -15,7 +15,14 @@ class RandomSequence {
  public:
   explicit RandomSequence(std::uint64_t seed) : seed_(seed) {}
   double between(double a, double b);  // a number in [a, b)
-  std::uint32_t seed();                // an integer from the whole range, for use as a seed
+  // A vector whose coordinates are in [-half, half). The last coordinate is drawn first.
+  template <int kRows>
+  Eigen::Matrix<double, kRows, 1> within(const Eigen::Matrix<double, kRows, 1>& half) {
+    Eigen::Matrix<double, kRows, 1> vector;
+    for (int k = kRows - 1; k >= 0; --k) vector[k] = between(-half[k], half[k]);
+    return vector;
+  }
+  std::uint32_t seed();  // an integer from the whole range, for use as a seed
 
  private:
   std::uint64_t seed_, index_ = 0;
@@ -26,6 +33,9 @@ class RandomSequence {
 // along `up`.
 View look_at(const Eigen::Vector3d& centre, const Eigen::Vector3d& target,
              const Eigen::Vector3d& up);
+
+// The rotation by an angle of up to `most_tilt` [rad] about x, and then by any angle about z.
+Eigen::Matrix3d random_turn(double most_tilt, RandomSequence& random);
 
 // Rotates the camera about each of its axes by a random angle of up to `degrees`.
 void shake(View& view, double degrees, RandomSequence& random);

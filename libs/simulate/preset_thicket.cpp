@@ -45,8 +45,8 @@ void grow(Terrain& terrain, const Eigen::Vector3d& from, const Eigen::Vector3d& 
 
 void add_coral(Terrain& terrain, double x, double y, double thickness, RandomSequence& random) {
   const Eigen::Vector3d root(x, y, terrain.floor.at(x, y) - 0.02);
-  grow(terrain, root, (any_direction(0.9, random)), random.between(0.075, 0.10), 0.5 * thickness,
-       random);
+  const double length = random.between(0.075, 0.10);
+  grow(terrain, root, any_direction(0.9, random), length, 0.5 * thickness, random);
 }
 
 // Adds a rope that sags between two supports, which are outside the views.
@@ -81,12 +81,12 @@ void add_plates(Terrain& terrain, double x, double y, double size, RandomSequenc
     terrain.blobs.push_back(blob);
   };
   add({x, y, ground + 0.5 * size}, {0.14 * size, 0.14 * size, 0.8 * size}, 0);
-  for (const double level : {0.5, 0.95, 1.3})
-    add({x + random.between(-0.3, 0.3) * size, y + random.between(-0.3, 0.3) * size,
-         ground + level * size},
-        {(1.2 - 0.5 * level) * size, random.between(0.7, 0.9) * (1.2 - 0.5 * level) * size,
-         0.06 * size},
-        random.between(-0.2, 0.2));
+  for (const double level : {0.5, 0.95, 1.3}) {
+    const double tilt = random.between(-0.2, 0.2), narrow = random.between(0.7, 0.9);
+    const double east = random.between(-0.3, 0.3), north = random.between(-0.3, 0.3);
+    add({x + east * size, y + north * size, ground + level * size},
+        {(1.2 - 0.5 * level) * size, narrow * (1.2 - 0.5 * level) * size, 0.06 * size}, tilt);
+  }
 }
 
 }  // namespace
@@ -101,11 +101,14 @@ void make_thicket(Preset& preset, std::uint32_t seed, int views) {
   terrain.half_width = 1.35;
   terrain.half_height = 1.35;
   terrain.skirt = 4;
-  for (const auto& [x, y] : {std::pair{-0.22, -0.16}, {0.20, 0.18}, {0.02, -0.27}, {-0.05, 0.26}})
-    add_coral(terrain, x + random.between(-0.04, 0.04), y + random.between(-0.04, 0.04),
-              16 * kPixel, random);
-  for (const double thickness : {8 * kPixel, 8 * kPixel, 4 * kPixel, 4 * kPixel})
-    add_coral(terrain, random.between(-0.35, 0.35), random.between(-0.35, 0.35), thickness, random);
+  for (const auto& [x, y] : {std::pair{-0.22, -0.16}, {0.20, 0.18}, {0.02, -0.27}, {-0.05, 0.26}}) {
+    const Eigen::Vector2d aside = random.within(Eigen::Vector2d(0.04, 0.04));
+    add_coral(terrain, x + aside.x(), y + aside.y(), 16 * kPixel, random);
+  }
+  for (const double thickness : {8 * kPixel, 8 * kPixel, 4 * kPixel, 4 * kPixel}) {
+    const Eigen::Vector2d place = random.within(Eigen::Vector2d(0.35, 0.35));
+    add_coral(terrain, place.x(), place.y(), thickness, random);
+  }
   for (const double thickness : kThickness)
     for (int i = 0; i < 2; ++i) add_rope(terrain, thickness * kPixel, random);
   add_plates(terrain, 0.03, 0.0, 0.12, random);

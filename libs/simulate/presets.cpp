@@ -29,9 +29,11 @@ void make_reef(Preset& preset, std::uint32_t seed, int views) {
   terrain.skirt = 12;
   scatter(terrain, kReefBoulders, {4.2, 3.4}, 0, {0.14, 0.55}, random);
   scatter(terrain, 40, {3.6, 2.8}, 0, {0.05, 0.14}, random);
-  for (const auto& [x, y] : {std::pair{-1.3, 0.5}, {0.4, -0.7}, {1.7, 0.6}, {-0.3, 1.4}})
-    add_mushroom(terrain, x + random.between(-0.2, 0.2), y + random.between(-0.2, 0.2),
-                 random.between(0.36, 0.48), random);
+  for (const auto& [x, y] : {std::pair{-1.3, 0.5}, {0.4, -0.7}, {1.7, 0.6}, {-0.3, 1.4}}) {
+    const double size = random.between(0.36, 0.48);
+    const Eigen::Vector2d aside = random.within(Eigen::Vector2d(0.2, 0.2));
+    add_mushroom(terrain, x + aside.x(), y + aside.y(), size, random);
+  }
   add_arch(terrain, -0.6, -0.8, 0.42, random);
   add_arch(terrain, 1.0, 0.3, 0.38, random);
 
@@ -57,10 +59,9 @@ void make_survey(Preset& preset, std::uint32_t seed, int views) {
   for (int i = 0; i < views; ++i) {
     const int row = i / kColumns, along = i % kColumns;
     const int column = row % 2 == 0 ? along : kColumns - 1 - along;
-    const Eigen::Vector3d centre(
-        kStep * (column - 0.5 * (kColumns - 1)) + random.between(-0.06, 0.06),
-        kStep * (row - 0.5 * (rows - 1)) + random.between(-0.06, 0.06),
-        kHeight + random.between(-0.12, 0.12));
+    const Eigen::Vector3d centre = Eigen::Vector3d(kStep * (column - 0.5 * (kColumns - 1)),
+                                                   kStep * (row - 0.5 * (rows - 1)), kHeight) +
+                                   random.within(Eigen::Vector3d(0.06, 0.06, 0.12));
     View view = look_at(centre, centre - Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
     shake(view, 4, random);
     preset.views.push_back(view);
@@ -89,7 +90,8 @@ void make_outcrop(Preset& preset, std::uint32_t seed, int views) {
     const double around = (-155 + 130 * along + random.between(-4, 4)) * kRadians;
     const double elevation = random.between(52, 70) * kRadians;
     const double range = random.between(2.2, 2.7);
-    const Eigen::Vector3d target(random.between(-0.15, 0.15), random.between(-0.15, 0.15), -0.25);
+    const Eigen::Vector2d aside = random.within(Eigen::Vector2d(0.15, 0.15));
+    const Eigen::Vector3d target(aside.x(), aside.y(), -0.25);
     const Eigen::Vector3d offset(std::cos(elevation) * std::cos(around),
                                  std::cos(elevation) * std::sin(around), std::sin(elevation));
     View view = look_at(target + range * offset, target, Eigen::Vector3d::UnitZ());

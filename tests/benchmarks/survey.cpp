@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "depth/warp.h"
+#include "drawn.h"
 #include "scene/camera_list.h"
 #include "support/textured_scene.h"
 
@@ -144,7 +145,7 @@ depth::PlaneHypothesis near_truth(const Survey& survey, int x, int y, float dept
                                   std::mt19937& random) {
   std::uniform_real_distribution<float> unit(-1, 1);
   const depth::PlaneHypothesis& plane = survey.truth.at(x, y).plane;
-  const Eigen::Vector3f off(unit(random), unit(random), unit(random));
+  const Eigen::Vector3f off = axial::test::drawn<3>(unit, random);
   return {plane.depth * (1 + depth * unit(random)), (plane.normal + turn * off).normalized()};
 }
 

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <random>
 
+#include "drawn.h"
 #include "support/error_of.h"
 #include "support/rings.h"
 
@@ -124,7 +125,7 @@ void expect_split_at(Mesh mesh, const Ring& ring) {
   std::uniform_real_distribution<double> any(0.02, 0.98);
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
     for (int sample = 0; sample < 4; ++sample) {
-      Eigen::Vector3d weights(any(random), any(random), any(random));
+      Eigen::Vector3d weights = axial::test::drawn<3>(any, random);
       weights /= weights.sum();
       Eigen::Vector3d place = Eigen::Vector3d::Zero();
       for (std::size_t k = 0; k < 3; ++k)

@@ -8,6 +8,7 @@
 
 #include "calibrate/board_survey.h"
 #include "calibrate/information.h"
+#include "drawn.h"
 #include "support/error_of.h"
 
 namespace axial::calibrate {
@@ -171,8 +172,7 @@ TEST(Advice, NoOtherPhotographHelpsMuchMoreOnceTaken) {
     View view{"next.png",
               testing::seen_corners(kPinhole, flat_port(), board.pose, kBoard, box(0, 0, 1, 1))};
     if (view.corners.empty()) return {};
-    for (Corner& corner : view.corners)
-      corner.pixel += Eigen::Vector2d(noise(random), noise(random));
+    for (Corner& corner : view.corners) corner.pixel += axial::test::drawn<2>(noise, random);
     std::vector<View> views = found.views;
     views.push_back(view);
     return calibrate(kPinhole, flat_port(), views, corners_of(kBoard), options);

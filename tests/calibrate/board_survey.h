@@ -8,6 +8,7 @@
 #include <random>
 
 #include "calibrate/board_bundle.h"
+#include "drawn.h"
 #include "io/colmap/colmap_lens.h"
 
 namespace axial::calibrate::testing {
@@ -97,12 +98,13 @@ inline Survey survey(const io::ColmapCamera& lens, const refractive::Port<double
     Pose pose;
     pose.rotation = Eigen::AngleAxisd(tilt, axis).toRotationMatrix() *
                     Eigen::AngleAxisd(uniform(-20, 20) * kDegree, Eigen::Vector3d::UnitZ());
-    pose.centre = middle - pose.rotation.transpose() *
-                               Eigen::Vector3d(uniform(-0.5, 0.5) * z, uniform(-0.4, 0.4) * z, z);
+    const double y = uniform(-0.4, 0.4) * z;
+    pose.centre =
+        middle - pose.rotation.transpose() * Eigen::Vector3d(uniform(-0.5, 0.5) * z, y, z);
     std::vector<Corner> seen = seen_corners(lens, port, pose, board, options.within);
     if (seen.empty()) continue;
     for (Corner& corner : seen)
-      corner.pixel += options.noise * Eigen::Vector2d(noise(random), noise(random));
+      corner.pixel += options.noise * axial::test::drawn<2>(noise, random);
     result.poses.push_back(pose);
     result.views.push_back({"view" + std::to_string(result.views.size()) + ".png", seen});
   }

@@ -6,6 +6,7 @@
 
 #include "calibrate/board_survey.h"
 #include "calibrate/information.h"
+#include "drawn.h"
 #include "support/error_of.h"
 
 namespace axial::calibrate {
@@ -129,8 +130,7 @@ TEST(Calibrate, StandardDeviationsAreHonest) {
   for (int run = 0; run < kRuns; ++run) {
     std::vector<View> views = exact.views;
     for (View& view : views)
-      for (Corner& corner : view.corners)
-        corner.pixel += Eigen::Vector2d(noise(random), noise(random));
+      for (Corner& corner : view.corners) corner.pixel += axial::test::drawn<2>(noise, random);
     const Calibration found = calibrate(kPinhole, flat_port(), views, corners_of(kBoard), options);
     sum2 += found.camera().change.cwiseAbs2();
     predicted2 += found.uncertainty.camera_sigmas[0].cwiseAbs2();

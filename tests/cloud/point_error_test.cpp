@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "drawn.h"
 #include "scene/any_camera.h"
 #include "support/analytic_scene.h"
 
@@ -59,7 +60,7 @@ double oracle_error(const CameraModel& model, const std::vector<Pose>& poses,
     std::vector<Eigen::Vector2d> seen;
     for (const Pose& pose : poses)
       seen.push_back(camera.project(pose.to_camera(point)).pixel +
-                     Eigen::Vector2d(pixel_noise(random), pixel_noise(random)));
+                     axial::test::drawn<2>(pixel_noise, random));
     Eigen::Vector3d X = point;
     for (int step = 0; step < 2; ++step) {
       Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
@@ -182,7 +183,7 @@ std::vector<PointSupport> random_supports(std::mt19937& random) {
     support.ray = Eigen::Vector3d(uniform(random) - 0.5, uniform(random) - 0.5, 1).normalized();
     support.pixel = support.depth * 1e-3 * (0.7 + 0.3 * uniform(random));
     support.cost = 0.03 + 0.5 * uniform(random);
-    support.point = 1e-3 * Eigen::Vector3d(uniform(random), uniform(random), uniform(random));
+    support.point = 1e-3 * axial::test::drawn<3>(uniform, random);
   }
   return supports;
 }

@@ -12,6 +12,7 @@
 
 #include "base/parallel.h"
 #include "cloud/fusion_fixture.h"
+#include "drawn.h"
 #include "scene/camera_model.h"
 
 namespace axial::cloud {
@@ -227,7 +228,7 @@ TEST_P(FuseTiles, AMapSeesTheBoxesThatHoldItsPoints) {
     box.rotation = rotation;
     box.low = rotation * (i % 2 == 0 ? place : points[i * 7919 % points.size()]);
     if (i % 2 == 1) box.low.array() -= 0.1;
-    box.high = box.low + Eigen::Vector3d(size(random), size(random), size(random));
+    box.high = box.low + axial::test::drawn<3>(size, random);
   }
   const std::vector<bool> seen = boxes_seen(map, boxes);
   int inside = 0, missed = 0;

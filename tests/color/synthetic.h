@@ -32,17 +32,22 @@ inline Synthetic synthetic(
   Synthetic result;
   result.observations.first.push_back(0);
   for (std::uint32_t point = 0; point < points; ++point) {
-    const Eigen::Array3f surface(uniform(0.05, 0.5), uniform(0.05, 0.5), uniform(0.05, 0.5));
+    Eigen::Array3f surface;
+    for (const int k : {2, 1, 0}) surface[k] = uniform(0.05, 0.5);
     result.surfaces.push_back(surface);
     const auto first_view = static_cast<std::uint32_t>(random() % views);
     for (std::uint32_t i = 0; i < kSeen; ++i) {
       Observation one;
       one.point = point;
       one.view = (first_view + i) % views;
+      const auto towards_camera = [&](double half) {
+        const float y = uniform(-half, half);
+        return Eigen::Vector3f(uniform(-half, half), y, -1).normalized();
+      };
       one.sight = {{uniform(-1, 1), uniform(-0.75, 0.75)},
                    uniform(nearest, farthest),
-                   Eigen::Vector3f(uniform(-0.5, 0.5), uniform(-0.5, 0.5), -1).normalized(),
-                   Eigen::Vector3f(uniform(-0.6, 0.6), uniform(-0.6, 0.6), -1).normalized()};
+                   towards_camera(0.5),
+                   towards_camera(0.6)};
       one.light = seen(one.sight, surface);
       for (int k = 0; k < 3; ++k) one.light[k] *= 1 + static_cast<float>(noise) * normal(random);
       one.spread.setZero();

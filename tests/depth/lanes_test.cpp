@@ -11,6 +11,7 @@
 
 #include "depth/lane_matcher.h"
 #include "depth/matcher.h"
+#include "drawn.h"
 #include "refractive/dome_port_camera.h"
 #include "refractive/flat_port_camera.h"
 
@@ -147,7 +148,7 @@ struct Setup {
       RelativePose pose;
       pose.rotation =
           Eigen::AngleAxisf(0.05f * unit(random), Eigen::Vector3f::UnitY()).toRotationMatrix();
-      pose.translation = 0.2f * Eigen::Vector3f(unit(random), unit(random), unit(random));
+      pose.translation = 0.2f * axial::test::drawn<3>(unit, random);
       const auto k = static_cast<std::size_t>(i);
       sources.push_back({make_camera_of<Camera>(85.0f + static_cast<float>(i), i), pose, &quads[k],
                          geometric && i % 4 != 0 ? &depths[k] : nullptr});

@@ -10,6 +10,7 @@
 #include "base/order_statistics.h"
 #include "diagnosis/refined_check.h"
 #include "diagnosis/words.h"
+#include "drawn.h"
 #include "pose/free_numbers.h"
 #include "pose/refine.h"
 #include "pose/survey.h"
@@ -189,7 +190,7 @@ Errors drawn_errors(std::mt19937_64& random) {
   errors.distance = ruler.distance * normal(random);
   errors.index = ruler.index * normal(random);
   errors.focal = ruler.focal * normal(random);
-  errors.centre = ruler.centre * Eigen::Vector3d(normal(random), normal(random), normal(random));
+  errors.centre = ruler.centre * axial::test::drawn<3>(normal, random);
   return errors;
 }
 

@@ -25,7 +25,7 @@ using testing::AnyOf;
 using testing::EndsWith;
 using testing::HasSubstr;
 
-const MapGrid kUtm{500000.125, 4500000.5, 0.01, 1024, 512};
+const MapGrid kUtmGrid{500000.125, 4500000.5, 0.01, 1024, 512};
 
 WorldAxes tilted() {
   WorldAxes axes;
@@ -36,7 +36,7 @@ WorldAxes tilted() {
 
 void write(const fs::path& path, MapKind kind, const cv::Mat& pixels,
            const std::optional<WorldAxes>& axes = {}) {
-  GeoTiff map(path, kind, kUtm, "");
+  GeoTiff map(path, kind, kUtmGrid, "");
   if (axes) map.state_axes(*axes);
   map.write({{}, pixels.size()}, pixels);
   map.finish();
@@ -44,7 +44,7 @@ void write(const fs::path& path, MapKind kind, const cv::Mat& pixels,
 
 // Heights 3 + x / 100 (x in pixels) but for the middle third, which has none.
 cv::Mat1f ramp() {
-  cv::Mat1f heights(kUtm.rows, kUtm.columns);
+  cv::Mat1f heights(kUtmGrid.rows, kUtmGrid.columns);
   for (int y = 0; y < heights.rows; ++y)
     for (int x = 0; x < heights.cols; ++x)
       heights(y, x) = x / 256 == 1 ? kNoHeight : 3 + (static_cast<float>(x) + 0.5F) / 100;
@@ -59,8 +59,8 @@ TEST(ReducedMap, AveragesHeightsAndLeavesMissingOnesOut) {
     const cv::Mat1f pixels = map.pixels;
     ASSERT_EQ(pixels.cols, longest);
     ASSERT_EQ(pixels.rows, longest / 2);
-    EXPECT_EQ(map.grid.left, kUtm.left);
-    EXPECT_EQ(map.grid.columns, kUtm.columns);
+    EXPECT_EQ(map.grid.left, kUtmGrid.left);
+    EXPECT_EQ(map.grid.columns, kUtmGrid.columns);
     const double width = 1024.0 / longest;
     EXPECT_NEAR(map.pixel_width(), 0.01 * width, 1e-12);
     for (int x = 0; x < longest; ++x) {
@@ -90,21 +90,21 @@ TEST(ReducedMap, LeavesInfiniteHeightsOut) {
 
 TEST(ReducedMap, ReadsCountsColoursAndClasses) {
   const fs::path folder = test::empty_folder();
-  cv::Mat1w counts(kUtm.rows, kUtm.columns, std::uint16_t{7});
+  cv::Mat1w counts(kUtmGrid.rows, kUtmGrid.columns, std::uint16_t{7});
   counts(cv::Rect(0, 0, 512, 512)) = kNoCount;
   write(folder / "counts.tif", MapKind::counts, counts);
   const cv::Mat1f read = read_reduced_map(folder / "counts.tif", MapKind::counts, 64).pixels;
   EXPECT_TRUE(std::isnan(read(10, 5)));
   EXPECT_EQ(read(10, 60), 7);
 
-  cv::Mat4b colors(kUtm.rows, kUtm.columns, cv::Vec4b(0, 0, 0, 0));
+  cv::Mat4b colors(kUtmGrid.rows, kUtmGrid.columns, cv::Vec4b(0, 0, 0, 0));
   for (int x = 512; x < 1024; ++x) colors.col(x) = cv::Vec4b(200, 100, 50, 255);
   write(folder / "colors.tif", MapKind::colors, colors);
   const cv::Mat4b seen = read_reduced_map(folder / "colors.tif", MapKind::colors, 64).pixels;
   EXPECT_EQ(seen(10, 5)[3], 0);
   EXPECT_EQ(seen(10, 60), cv::Vec4b(200, 100, 50, 255));
 
-  cv::Mat1b classes(kUtm.rows, kUtm.columns, std::uint8_t{2});
+  cv::Mat1b classes(kUtmGrid.rows, kUtmGrid.columns, std::uint8_t{2});
   classes(cv::Rect(0, 0, 512, 512)) = 0;
   classes(cv::Rect(0, 0, 100, 512)) = kNoClass;
   write(folder / "classes.tif", MapKind::classes, classes);

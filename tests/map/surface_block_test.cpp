@@ -6,12 +6,13 @@
 #include <cmath>
 #include <random>
 
+#include "drawn.h"
 #include "worlds/height_field.h"
 
 namespace axial::map {
 namespace {
 
-constexpr double kPixel = 0.03125;  // a power of two: no rounding in the tests
+constexpr double kExactPixel = 0.03125;  // a power of two: no rounding in the tests
 
 SurfaceBlock whole_map(const Mesh& mesh, const MapFrame& frame, const MapGrid& grid,
                        int samples = 1) {
@@ -26,14 +27,14 @@ TEST(SurfaceBlock, HeightsAreThoseOfTheFunctionAtPixelCentres) {
   const Mesh mesh = test::height_field({-1, -0.5}, {1, 1.5}, 16, height);
   for (const Eigen::Vector3d& origin : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(5e5, 4.5e6, 0)}) {
     const MapFrame frame = frame_with_up({0, 0, 1}, {origin});
-    const MapGrid grid = grid_around(mesh, frame, kPixel);
+    const MapGrid grid = grid_around(mesh, frame, kExactPixel);
     ASSERT_EQ(grid.columns, 64);
     ASSERT_EQ(grid.rows, 64);
     const SurfaceBlock block = whole_map(mesh, frame, grid);
     for (int row = 0; row < grid.rows; ++row)
       for (int column = 0; column < grid.columns; ++column) {
-        const double x = grid.left + (column + 0.5) * kPixel - origin.x();
-        const double y = grid.top - (row + 0.5) * kPixel - origin.y();
+        const double x = grid.left + (column + 0.5) * kExactPixel - origin.x();
+        const double y = grid.top - (row + 0.5) * kExactPixel - origin.y();
         EXPECT_NEAR(block.heights(row, column), height(x, y), 1e-6) << column << " " << row;
       }
   }
@@ -43,7 +44,7 @@ TEST(SurfaceBlock, TheMiddleOfOddSamplesIsThePixelCentre) {
   const Mesh mesh = test::height_field(
       {0, 0}, {1, 1}, 7, [](double x, double y) { return std::sin(5 * x) * std::cos(4 * y); });
   const MapFrame frame = frame_with_up({0, 0, 1}, {});
-  const MapGrid grid = grid_around(mesh, frame, kPixel);
+  const MapGrid grid = grid_around(mesh, frame, kExactPixel);
   const SurfaceBlock centres = whole_map(mesh, frame, grid), fine = whole_map(mesh, frame, grid, 5);
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
@@ -61,7 +62,7 @@ TEST(SurfaceBlock, TheHighestSurfaceIsVisible) {
       test::height_field({-0.5, -0.25}, {0.5, 0.25}, 2, [](double, double) { return 0.3; });
   test::append(mesh, table);
   const MapFrame frame = frame_with_up({0, 0, 1}, {});
-  const MapGrid grid = grid_around(mesh, frame, kPixel);
+  const MapGrid grid = grid_around(mesh, frame, kExactPixel);
   const SurfaceBlock block = whole_map(mesh, frame, grid);
   int on_table = 0;
   for (int row = 0; row < grid.rows; ++row)
@@ -77,7 +78,7 @@ TEST(SurfaceBlock, TheHighestSurfaceIsVisible) {
 TEST(SurfaceBlock, TheOrderOfTheCornersHasNoEffect) {
   Mesh mesh = test::height_field({0, 0}, {1, 1}, 9, [](double x, double y) { return x * y; });
   const MapFrame frame = frame_with_up({0, 0, 1}, {});
-  const MapGrid grid = grid_around(mesh, frame, kPixel);
+  const MapGrid grid = grid_around(mesh, frame, kExactPixel);
   const SurfaceBlock before = whole_map(mesh, frame, grid);
   for (auto& face : mesh.faces) std::swap(face[0], face[2]);
   const SurfaceBlock after = whole_map(mesh, frame, grid);
@@ -88,7 +89,7 @@ TEST(SurfaceBlock, HolesHaveNoHeight) {
   Mesh mesh = test::height_field({0, 0}, {1, 1}, 4, [](double, double) { return 1.0; });
   mesh.faces.erase(mesh.faces.begin() + 10, mesh.faces.begin() + 12);  // the second cell of row 1
   const MapFrame frame = frame_with_up({0, 0, 1}, {});
-  const MapGrid grid = grid_around(mesh, frame, kPixel);
+  const MapGrid grid = grid_around(mesh, frame, kExactPixel);
   const SurfaceBlock block = whole_map(mesh, frame, grid);
   for (int row = 0; row < 32; ++row)
     for (int column = 0; column < 32; ++column) {
@@ -105,7 +106,7 @@ TEST(SurfaceBlock, NoGapsBetweenFaces) {
   std::uniform_real_distribution<float> shift(-0.01f, 0.01f);
   for (Eigen::Vector3f& vertex : mesh.vertices)
     if (vertex.x() > 0 && vertex.x() < 1 && vertex.y() > 0 && vertex.y() < 1)
-      vertex.head<2>() += Eigen::Vector2f(shift(random), shift(random));
+      vertex.head<2>() += axial::test::drawn<2>(shift, random);
   const MapFrame frame = frame_with_up({0.1, -0.2, 1}, {});
   const MapGrid grid = grid_around(mesh, frame, 1.0 / 333);
   const SurfaceBlock block = whole_map(mesh, frame, grid, 3);

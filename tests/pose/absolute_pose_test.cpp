@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <random>
 
+#include "drawn.h"
 #include "pose/p3p.h"
 #include "pose/sightings.h"
 #include "pose/survey.h"
@@ -146,9 +147,7 @@ INSTANTIATE_TEST_SUITE_P(Ports, AbsolutePoseTest,
 TEST(P3pTest, FindsAtMostFourPosesAndAllAreRight) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const auto vector = [&] {
-    return Eigen::Vector3d(uniform(random), uniform(random), uniform(random));
-  };
+  const auto vector = [&] { return axial::test::drawn<3>(uniform, random); };
   int missed = 0;
   for (int k = 0; k < 300; ++k) {
     const Pose truth = testing::looking_at(3 * vector() - Eigen::Vector3d(0, 0, 5), vector(), k);

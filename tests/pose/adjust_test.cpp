@@ -7,6 +7,7 @@
 #include <random>
 
 #include "base/order_statistics.h"
+#include "drawn.h"
 #include "pose/depth_sigma.h"
 #include "pose/survey.h"
 #include "support/error_of.h"
@@ -237,7 +238,7 @@ Bundle with_noise(Bundle bundle, double sigma, int seed) {
   std::mt19937_64 random(static_cast<unsigned>(seed) + 100);
   std::normal_distribution<double> noise(0, sigma);
   for (Observation& observation : bundle.observations)
-    observation.pixel += Eigen::Vector2d(noise(random), noise(random));
+    observation.pixel += axial::test::drawn<2>(noise, random);
   return bundle;
 }
 
@@ -472,7 +473,7 @@ TEST(Adjust, EndsWhereOnlyOutliersMove) {
   std::mt19937 draw(5);
   std::uniform_real_distribution<double> wrong(-60, 60);
   for (Observation& observation : early.observations)
-    if (observation.point % 8 == 0) observation.pixel += Eigen::Vector2d(wrong(draw), wrong(draw));
+    if (observation.point % 8 == 0) observation.pixel += axial::test::drawn<2>(wrong, draw);
   disturb(early, 0.5 * kDegree, 0.01, 3);
   Bundle late = early;
   AdjustOptions options;

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "drawn.h"
 #include "pose/refine.h"
 #include "pose/survey.h"
 
@@ -27,7 +28,7 @@ Bundle mixed_features(unsigned seed) {
     const bool coarse = random() % 4 == 0;
     const double spread = coarse ? kCoarseNoise : kFineNoise;
     observation.size = coarse ? kCoarse : kFine;
-    observation.pixel += spread * Eigen::Vector2d(normal(random), normal(random));
+    observation.pixel += spread * axial::test::drawn<2>(normal, random);
   }
   return bundle;
 }
@@ -73,7 +74,7 @@ TEST(ObservationWeights, FollowTheErrorsAtTheRim) {
   for (Observation& observation : bundle.observations) {
     radii.push_back((observation.pixel - middle).norm());
     const double spread = 0.1 + 0.001 * radii.back();
-    observation.pixel += spread * Eigen::Vector2d(normal(random), normal(random));
+    observation.pixel += spread * axial::test::drawn<2>(normal, random);
   }
   weigh_by_size(bundle);
   weigh_by_radius(bundle);

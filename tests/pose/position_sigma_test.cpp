@@ -9,6 +9,7 @@
 #include <cmath>
 #include <random>
 
+#include "drawn.h"
 #include "pose/known.h"
 #include "pose/survey.h"
 #include "scene/decompositions.h"
@@ -34,7 +35,7 @@ Positions positions_of(const Bundle& truth, double sigma, unsigned seed) {
   std::normal_distribution<double> noise(0, 1);
   Positions positions;
   for (std::size_t i = 0; i < truth.images.size(); ++i) {
-    const Eigen::Vector3d off(noise(random), noise(random), noise(random));
+    const Eigen::Vector3d off = axial::test::drawn<3>(noise, random);
     positions.push_back(
         {i, truth.images[i].pose.centre + sigma * off, Eigen::Vector3d::Constant(0.1), true});
   }

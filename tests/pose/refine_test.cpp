@@ -9,6 +9,7 @@
 #include <random>
 #include <stop_token>
 
+#include "drawn.h"
 #include "pose/survey.h"
 
 namespace axial::pose {
@@ -134,7 +135,7 @@ AdjustOptions with_positions(const Bundle& truth, double sigma, unsigned seed) {
   std::normal_distribution<double> noise(0, sigma);
   AdjustOptions options;
   for (std::size_t i = 0; i < truth.images.size(); ++i) {
-    const Eigen::Vector3d off(noise(random), noise(random), noise(random));
+    const Eigen::Vector3d off = axial::test::drawn<3>(noise, random);
     options.positions.push_back(
         {i, truth.images[i].pose.centre + off, Eigen::Vector3d::Constant(0.1), true});
   }

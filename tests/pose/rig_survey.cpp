@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <random>
 
+#include "drawn.h"
+
 namespace axial::pose::testing {
 namespace {
 
@@ -55,8 +57,8 @@ Bundle rig_survey(const RigSurveyOptions& options) {
     return std::uniform_real_distribution<double>(low, high)(random);
   };
   while (bundle.points.size() < static_cast<std::size_t>(options.points)) {
-    const Eigen::Vector3d point(uniform(-half, half), uniform(-0.5, 0.7),
-                                options.distance * uniform(0.8, 1.2));
+    const double z = options.distance * uniform(0.8, 1.2), y = uniform(-0.5, 0.7);
+    const Eigen::Vector3d point(uniform(-half, half), y, z);
     std::vector<Observation> track;
     for (std::size_t i = 0; i < bundle.images.size(); ++i) {
       const BundleImage& image = bundle.images[i];
@@ -68,7 +70,7 @@ Bundle rig_survey(const RigSurveyOptions& options) {
       Observation observation;
       observation.image = i;
       observation.point = observation.source = bundle.points.size();
-      observation.pixel = p + Eigen::Vector2d(noise(random), noise(random));
+      observation.pixel = p + axial::test::drawn<2>(noise, random);
       track.push_back(observation);
     }
     if (track.size() < 3) continue;

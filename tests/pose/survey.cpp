@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "drawn.h"
 #include "pose/refine.h"
 #include "scene/decompositions.h"
 
@@ -29,15 +30,18 @@ Bundle survey(const CameraModel& camera, const SurveyOptions& options) {
   bundle.cameras.push_back({housed(camera), HousingChange<double>::Zero()});
   for (int i = 0; i < options.images; ++i) {
     const double along = 0.9 * d * (i / (options.images - 1.0) - 0.5);
-    const Eigen::Vector3d centre(along, uniform(-0.25, 0.25) * d, uniform(-0.2, 0.2) * d);
-    const Eigen::Vector3d target(uniform(-0.3, 0.3) * d, uniform(-0.2, 0.2) * d, d);
+    // A line for each number: C++ leaves the order of arguments open.
+    const double up = uniform(-0.2, 0.2) * d;
+    const Eigen::Vector3d centre(along, uniform(-0.25, 0.25) * d, up);
+    const double beside = uniform(-0.2, 0.2) * d;
+    const Eigen::Vector3d target(uniform(-0.3, 0.3) * d, beside, d);
     bundle.images.push_back(
         {"image" + std::to_string(i) + ".jpg", 0, looking_at(centre, target, i * 1.3)});
   }
   const auto seeing = make_camera<double>(camera);
   while (bundle.points.size() < static_cast<std::size_t>(options.points)) {
-    const Eigen::Vector3d point(uniform(-0.8, 0.8) * d, uniform(-0.6, 0.6) * d,
-                                uniform(0.8, 1.25) * d);
+    const double z = uniform(0.8, 1.25) * d, y = uniform(-0.6, 0.6) * d;
+    const Eigen::Vector3d point(uniform(-0.8, 0.8) * d, y, z);
     std::vector<Observation> track;
     for (std::size_t i = 0; i < bundle.images.size(); ++i) {
       const auto image = std::visit(
@@ -49,7 +53,7 @@ Bundle survey(const CameraModel& camera, const SurveyOptions& options) {
       Observation observation;
       observation.image = i;
       observation.point = bundle.points.size();
-      observation.pixel = p + options.noise * Eigen::Vector2d(noise(random), noise(random));
+      observation.pixel = p + options.noise * axial::test::drawn<2>(noise, random);
       observation.source = bundle.points.size();
       track.push_back(observation);
     }
@@ -73,7 +77,7 @@ Bundle mixed_survey(const CameraModel& first, const CameraModel& second,
     if (image.camera == 0) return false;
     const Eigen::Vector3d X = image.pose.to_camera(bundle.points[observation.point].position);
     const auto seen = std::visit([&](const auto& c) { return c.project(X); }, seeing);
-    observation.pixel = seen.pixel + options.noise * Eigen::Vector2d(noise(random), noise(random));
+    observation.pixel = seen.pixel + options.noise * axial::test::drawn<2>(noise, random);
     const Eigen::Vector2d& p = seen.pixel;
     return !seen.visible || p.x() < 0 || p.y() < 0 || p.x() > second.width - 1 ||
            p.y() > second.height - 1;
@@ -102,9 +106,7 @@ KnownDistance known_length(const Bundle& truth, double sigma) {
 void disturb(Bundle& bundle, double angle, double shift, unsigned seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0, 1);
-  const auto vector = [&] {
-    return Eigen::Vector3d(normal(random), normal(random), normal(random));
-  };
+  const auto vector = [&] { return axial::test::drawn<3>(normal, random); };
   for (BundleImage& image : bundle.images) {
     const Eigen::Vector3d turn = angle * vector();
     image.pose.rotation =

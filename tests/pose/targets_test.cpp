@@ -266,13 +266,13 @@ TEST(Places, PlaceTheModelAsWellAsStated) {
       const double x = normal(random), y = normal(random);
       return Eigen::Vector3d(x, y, normal(random));
     };
-    for (const std::size_t plate : {6, 7, 8, 9})
+    for (const std::size_t plate : {6u, 7u, 8u, 9u})
       dive.options.adjust.places.push_back(
           place(dive.options.targets, dive.plates[plate], error(), kSigma));
     const RefineReport report = dive.refine();
     EXPECT_THAT(report.wrong_control, IsEmpty()) << draw;
     std::vector<KnownPlace> checks;
-    for (const std::size_t plate : {0, 3, 5})
+    for (const std::size_t plate : {0u, 3u, 5u})
       checks.push_back(
           place(dive.options.targets, dive.plates[plate], Eigen::Vector3d::Zero(), 1e-5));
     for (const PlaceFit& fit :
@@ -329,7 +329,7 @@ TEST(Places, InThePlaneDoNotTurnTheModelOver) {
     std::mt19937_64 random(draw);
     std::uniform_real_distribution<double> place(-1, 1);
     Dive dive;
-    for (const std::size_t plate : {6, 7, 8}) {
+    for (const std::size_t plate : {6u, 7u, 8u}) {
       if (plate == 8 && draw <= 4) continue;
       const double x = place(random), y = place(random);
       dive.options.adjust.places.push_back(
@@ -353,7 +353,7 @@ TEST(Places, OfCamerasPlaceAModelWithoutTargets) {
   dive.options.targets.clear();
   dive.bundle = absorbed(dive.truth, 0.37);
   const Eigen::Vector3d shift(100, 200, -20);
-  for (const std::size_t image : {0, 5, 10, 15})
+  for (const std::size_t image : {0u, 5u, 10u, 15u})
     dive.options.adjust.places.push_back({KnownDistance::Between::images, image,
                                           dive.truth.images[image].pose.centre + shift,
                                           Eigen::Vector3d::Constant(0.002), "camera"});

@@ -10,6 +10,7 @@
 #include <optional>
 #include <random>
 
+#include "drawn.h"
 #include "refractive/axial_ray.h"
 #include "refractive/flat_port_camera.h"
 
@@ -35,7 +36,7 @@ class Random {
   }
   Eigen::Vector3d unit_vector() {
     std::normal_distribution<double> normal;
-    return Eigen::Vector3d(normal(engine_), normal(engine_), normal(engine_)).normalized();
+    return axial::test::drawn<3>(normal, engine_).normalized();
   }
 
  private:

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <random>
 
+#include "drawn.h"
 #include "refractive/flat_port_camera.h"
 #include "scene/camera_model.h"
 #include "support/error_of.h"
@@ -28,7 +29,7 @@ class Random {
   }
   Vector3d direction() {
     std::normal_distribution<double> normal;
-    return Vector3d(normal(engine_), normal(engine_), normal(engine_)).normalized();
+    return axial::test::drawn<3>(normal, engine_).normalized();
   }
 
  private:

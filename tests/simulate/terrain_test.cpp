@@ -89,7 +89,7 @@ TEST(Terrain, SurveyGrowsWithItsViewsButEachSeesAsMuch) {
     ASSERT_EQ(preset.views.size(), static_cast<std::size_t>(views));
     preset.terrain.cell *= 6;
     const RayScene scene(terrain_mesh(preset.terrain));
-    for (const std::size_t i : {0, views / 2, views - 1}) {
+    for (const std::size_t i : {std::size_t{0}, preset.views.size() / 2, preset.views.size() - 1}) {
       const Truth truth = render_truth(scene, preset.lens, nullptr, preset.views[i]);
       for (const float distance : truth.distance) ASSERT_GT(distance, 1.5f);  // no background
     }
