@@ -8,7 +8,8 @@
 #
 #   bash tests/run.sh [--all] [CTEST-OPTION...]
 #
-# --all: builds every unit test in both builds. Other arguments go to ctest: tests/run.sh -R io.
+# --all: builds every unit test in both builds, and runs the program tests that take minutes. Other
+# arguments go to ctest: tests/run.sh -R io.
 # One CTest run covers both builds, so its summary at the end counts all tests.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

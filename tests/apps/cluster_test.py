@@ -13,7 +13,7 @@ import unittest.mock
 
 import small_slurm
 from pipeline_folder import reconstruct_command, simulate
-from programs import BIN, main, new_folder
+from programs import BIN, main, new_folder, slow
 from support import colmap_text
 
 RESULTS = ("scene_dense.mvs", "scene_dense.ply", "scene_dense_mesh.ply", "scene_dense_refined.ply",
@@ -58,7 +58,7 @@ def put_script(path, text):
 
 
 @unittest.skipUnless(shutil.which("snakemake"), "snakemake is not installed")
-class Cluster(unittest.TestCase):
+class Workflow(unittest.TestCase):
     """A survey of small views, and the folder of a run of `reconstruct` alone, with which all cases compare. Jobs of
     Slurm start snakemake twice, so cases with Slurm begin with a copy of this folder (as_left_alone)."""
 
@@ -132,6 +132,8 @@ class Cluster(unittest.TestCase):
             self.assertLess(time.monotonic(), end)
             time.sleep(0.01)
 
+
+class OnThisMachine(Workflow):
     def test_gives_the_same_bytes_after_it_was_killed(self):
         process = self.start("killed", "--cluster", "local")
         self.wait_for_part(process, "killed")
@@ -174,6 +176,9 @@ class Cluster(unittest.TestCase):
         self.assertEqual(list((self.folder / "out").glob("depth*.*.dmap")), [])
         self.assertEqual(*clouds)
 
+
+@slow
+class OnTwoNodes(Workflow):
     def start_cluster(self):
         self.cluster = small_slurm.Cluster()
         self.addCleanup(self.cluster.stop)

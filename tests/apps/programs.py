@@ -175,13 +175,21 @@ class ProgramTest(unittest.TestCase):
             self.assertLess(abs(a - b), within)
 
 
+def slow(test):
+    """Marks a class that takes minutes: only `tests/run.sh --all` runs it."""
+    test.slow = True
+    return test
+
+
 def main():
-    """Runs all cases, or those of the classes on the command line. --list prints the classes."""
+    """Runs all cases, or those of the classes on the command line. --list prints the classes, and those that take
+    minutes only if AXIAL_EVERY_TEST is ON in the environment."""
     if sys.argv[1:] == ["--list"]:
         loader = unittest.defaultTestLoader
+        every = os.environ.get("AXIAL_EVERY_TEST") == "ON"
         print("\n".join(name for name, value in vars(sys.modules["__main__"]).items()
                         if isinstance(value, type) and issubclass(value, unittest.TestCase)
-                        and loader.getTestCaseNames(value)))
+                        and loader.getTestCaseNames(value) and (every or not vars(value).get("slow"))))
         return
     if not BIN:
         sys.exit("set AXIAL_BIN to the folder of the programs")
