@@ -19,13 +19,14 @@ find_package(Boost REQUIRED COMPONENTS program_options)
 find_package(Ceres REQUIRED COMPONENTS SuiteSparse)
 find_package(GDAL REQUIRED)
 find_package(pugixml REQUIRED)
+find_package(yaml-cpp REQUIRED)
 find_package(CGAL REQUIRED)
 # CGAL adds -frounding-math to all files of the targets that link it. Here only the files that include
 # CGAL get this option (axial_source_options), so that all other files keep the precompiled headers and
-# the arithmetic of the rest of the project. The compiler takes numbers in CGAL's headers for
+# the arithmetic of the rest of the project. GCC takes numbers in CGAL's headers for
 # uninitialised that are not.
 set_target_properties(CGAL PROPERTIES INTERFACE_COMPILE_OPTIONS "")
-set(AXIAL_CGAL_OPTIONS -frounding-math -Wno-maybe-uninitialized)
+set(AXIAL_CGAL_OPTIONS -frounding-math $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 # These packages have no CMake files.
 find_path(MAXFLOW_INCLUDE_DIR maxflow.h PATH_SUFFIXES maxflow-3.0 REQUIRED)
 find_library(MAXFLOW_LIBRARY maxflow REQUIRED)

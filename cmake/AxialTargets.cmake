@@ -56,11 +56,15 @@ set(AXIAL_PARSED_LIBRARIES Eigen3::Eigen fmt::fmt opencv_core opencv_imgproc)
 add_axial_parsed_headers(axial_parsed
   HEADERS ${AXIAL_PARSED_HEADERS} LINK axial_flags ${AXIAL_PARSED_LIBRARIES})
 
+# The linker lld saves two thirds of the link time.
 include(CheckLinkerFlag)
+check_linker_flag(CXX -fuse-ld=lld AXIAL_HAS_LLD)
+if(AXIAL_HAS_LLD)
+  target_link_options(axial_flags INTERFACE -fuse-ld=lld)
+endif()
 # Tests are compiled and linked far more often than they are run. -O1 saves a third of a test's
-# compile time. With the sanitizers, -O0 saves two thirds of it. The linker gold saves half of its link time, lld two thirds. --as-needed drops
-# libraries that a test does not use: opencv_imgcodecs alone loads a hundred libraries, which takes
-# 0.15 s at each start.
+# compile time. With the sanitizers, -O0 saves two thirds of it. --as-needed drops libraries that a test does not use:
+# opencv_imgcodecs alone loads a hundred libraries, which takes 0.15 s at each start.
 set(AXIAL_TEST_OPTIMIZATION -O1)
 if(AXIAL_SANITIZE)
   set(AXIAL_TEST_OPTIMIZATION -O0)
@@ -68,13 +72,6 @@ endif()
 add_library(axial_test_flags INTERFACE)
 target_link_libraries(axial_test_flags INTERFACE axial_flags)
 target_link_options(axial_test_flags INTERFACE -Wl,--as-needed)
-check_linker_flag(CXX -fuse-ld=lld AXIAL_HAS_LLD)
-check_linker_flag(CXX -fuse-ld=gold AXIAL_HAS_GOLD)
-if(AXIAL_HAS_LLD)
-  target_link_options(axial_test_flags INTERFACE -fuse-ld=lld)
-elseif(AXIAL_HAS_GOLD)
-  target_link_options(axial_test_flags INTERFACE -fuse-ld=gold)
-endif()
 if(AXIAL_TESTS)
   add_axial_parsed_headers(axial_parsed_for_tests
     HEADERS ${AXIAL_PARSED_HEADERS} <gmock/gmock.h> <gtest/gtest.h>
@@ -100,13 +97,17 @@ endfunction()
 # -DAXIAL_UNITY=OFF compiles every file alone, for an editor and for work on a few files.
 option(AXIAL_UNITY "Compile several source files as one" ON)
 function(axial_unity target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${AXIAL_UNITY} UNITY_BUILD_BATCH_SIZE 6)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${AXIAL_UNITY} UNITY_BUILD_BATCH_SIZE 18)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 # For files that instantiate the sweep for all cameras. With its default limits of growth for one
 # file, the compiler would not even inline Eigen's products in the innermost loop.
-if(NOT AXIAL_SANITIZE)
+if(AXIAL_SANITIZE)
+  set(AXIAL_INLINE_ALL)
+elseif(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  set(AXIAL_INLINE_ALL -mllvm -inline-threshold=2000)
+elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(AXIAL_INLINE_ALL --param=inline-unit-growth=400 --param=large-function-growth=1000
     --param=max-inline-insns-single=400)
 endif()
@@ -229,6 +230,7 @@ function(add_axial_test name)
   string(REPLACE "/" "_" target ${name})
   axial_add_test_program(${target} SOURCES ${PROJECT_SOURCE_DIR}/tests/${name}.cpp ${ARG_SOURCES}
     LINK ${ARG_LINK})
+  axial_unity(${target})
   if(ARG_PRIVATE_OF)
     target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/libs/${ARG_PRIVATE_OF})
   endif()

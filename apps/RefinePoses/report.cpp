@@ -15,6 +15,7 @@
 namespace axial::apps {
 namespace {
 
+using Json = nlohmann::ordered_json;
 using pose::Bundle;
 
 // Without positions that pull, adjustment cannot make the reprojection errors this much larger.
@@ -84,7 +85,6 @@ nlohmann::ordered_json decided_by(const pose::HousingNumber& value, bool compute
 }
 
 nlohmann::ordered_json json_of(const Registered& registered) {
-  using Json = nlohmann::ordered_json;
   Json json{{"photographs", registered.names},
             {"left_out", Json::array()},
             {"observations", registered.observations},
@@ -241,7 +241,6 @@ std::optional<std::string> depth_warning(const pose::Uncertainty& known) {
 }
 
 std::string report_json(const Results& results, const pose::Uncertainty* known) {
-  using Json = nlohmann::ordered_json;
   const pose::RefineReport& report = results.report;
   const pose::Uncertainty uncertainty = known ? *known : not_computed(results);
   Json json{{"rms_before_px", report.rms_before},

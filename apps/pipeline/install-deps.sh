@@ -6,10 +6,11 @@ set -euo pipefail
 
 packages=(
   # to build
-  g++ cmake ninja-build git help2man python3
+  clang g++ lld cmake ninja-build git help2man python3
   libeigen3-dev libopencv-dev libjpeg-dev libpng-dev libtiff-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
   libnanoflann-dev libembree-dev libcgal-dev libmaxflow-dev libxxhash-dev libboost-dev libboost-program-options-dev
   libstb-dev libtinygltf-dev libceres-dev libsuitesparse-dev libgdal-dev libpugixml-dev libsqlite3-dev
+  libyaml-cpp-dev
   # to build the page of ViewScene without npm
   esbuild libjs-three
   # for the Debian packages and the archive (packaging)
@@ -19,7 +20,7 @@ packages=(
 others=(
   # to test
   clang-format doxygen libgtest-dev libgmock-dev librapidcheck-dev
-  clang libclang-rt-dev
+  libclang-rt-dev
   # for the Python package (AXIAL_PYTHON)
   pybind11-dev python3-dev python3-numpy
   # for the laboratory (AXIAL_SCIENCE): benchmarks, and figures of docs/paper

@@ -11,7 +11,7 @@
 namespace axial::calibrate {
 namespace {
 
-constexpr double kWidth = 720, kMargin = 30, kTitle = 50;
+constexpr double kWidth = 720, kFrame = 30, kTitle = 50;
 constexpr int kColumns = 8, kRows = 6;
 
 // The colour for errors up to one, up to two, and above two times the usual error.
@@ -26,11 +26,11 @@ class Drawing {
   explicit Drawing(const io::ColmapCamera& lens)
       : scale_(kWidth / static_cast<double>(lens.width)),
         height_(static_cast<double>(lens.height) * scale_),
-        svg_(kWidth + 2 * kMargin, height_ + kTitle + kMargin) {}
+        svg_(kWidth + 2 * kFrame, height_ + kTitle + kFrame) {}
 
   void head(const std::string& title) {
-    svg_.text(kMargin, 22, title, picture::Anchor::kStart, "title");
-    svg_.text(kMargin, 40, "error: blue: up to the RMS; orange: up to twice the RMS; red: larger",
+    svg_.text(kFrame, 22, title, picture::Anchor::kStart, "title");
+    svg_.text(kFrame, 40, "error: blue: up to the RMS; orange: up to twice the RMS; red: larger",
               picture::Anchor::kStart, "small");
   }
 
@@ -38,12 +38,12 @@ class Drawing {
     for (int i = 0; i <= kColumns; ++i)
       svg_.line(column(i), kTitle, column(i), kTitle + height_, kind(i, kColumns));
     for (int i = 0; i <= kRows; ++i)
-      svg_.line(kMargin, row(i), kMargin + kWidth, row(i), kind(i, kRows));
+      svg_.line(kFrame, row(i), kFrame + kWidth, row(i), kind(i, kRows));
   }
 
   void corner(const Eigen::Vector2d& pixel, const char* color, const std::string& tip) {
     const double x = (pixel.x() + 0.5) * scale_, y = (pixel.y() + 0.5) * scale_;
-    svg_.circle(kMargin + x, kTitle + y, color, tip);
+    svg_.circle(kFrame + x, kTitle + y, color, tip);
     ++counts_[field(y, height_, kRows)][field(x, kWidth, kColumns)];
   }
 
@@ -56,7 +56,7 @@ class Drawing {
   }
 
  private:
-  static double column(int i) { return kMargin + kWidth * i / kColumns; }
+  static double column(int i) { return kFrame + kWidth * i / kColumns; }
   double row(int i) const { return kTitle + height_ * i / kRows; }
   static const char* kind(int i, int last) { return i % last == 0 ? "axis" : "grid"; }
   static std::size_t field(double at, double size, int fields) {

@@ -140,7 +140,7 @@ std::vector<Corners> fans_of(const Mesh& mesh, const Corners& corners) {
   DisjointSets<std::uint32_t> sets(corners.size());
   std::map<std::uint32_t, std::uint32_t> first_at;  // by the other end of an edge
   for (std::uint32_t i = 0; i < corners.size(); ++i)
-    for (const std::size_t step : {1, 2}) {
+    for (const std::size_t step : {1u, 2u}) {
       const auto& [face, k] = corners[i];
       const auto [entry, is_new] = first_at.emplace(mesh.faces[face][(k + step) % 3], i);
       if (!is_new) sets.join(entry->second, i);
@@ -235,7 +235,8 @@ void split_fans(const Patch& patch, Mesh& mesh) {
     for (std::size_t fan = 1; fan < fans.size(); ++fan) {
       Eigen::Vector3f mean = Eigen::Vector3f::Zero();
       for (const auto& [f, k] : fans[fan])
-        for (const std::size_t step : {1, 2}) mean += mesh.vertices[mesh.faces[f][(k + step) % 3]];
+        for (const std::size_t step : {1u, 2u})
+          mean += mesh.vertices[mesh.faces[f][(k + step) % 3]];
       mean /= static_cast<float>(2 * fans[fan].size());
       const Eigen::Vector3f place = mesh.vertices[vertex];
       for (const auto& [f, k] : fans[fan])

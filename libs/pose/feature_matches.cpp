@@ -25,14 +25,17 @@ void FeatureMatches::sort() {
   parallel_for(links_.size(), [&](std::size_t image) {
     std::vector<FeatureLink>& own = links_[image];
     std::ranges::sort(own, {}, key_of);
-    const auto repeated = std::ranges::unique(own, {}, key_of);
-    own.erase(repeated.begin(), repeated.end());
+    const auto same = [](const FeatureLink& a, const FeatureLink& b) {
+      return key_of(a) == key_of(b);
+    };
+    own.erase(std::unique(own.begin(), own.end(), same), own.end());
   });
 }
 
 std::span<const FeatureLink> FeatureMatches::links(std::size_t image, std::uint32_t feature) const {
-  const auto found = std::ranges::equal_range(links_[image], feature, {}, &FeatureLink::feature);
-  return {found.begin(), found.end()};
+  const std::vector<FeatureLink>& all = links_[image];
+  const auto begin = std::ranges::lower_bound(all, feature, {}, &FeatureLink::feature);
+  return {begin, std::ranges::upper_bound(begin, all.end(), feature, {}, &FeatureLink::feature)};
 }
 
 std::vector<std::vector<std::size_t>> points_of_features(const Bundle& bundle,

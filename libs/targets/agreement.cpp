@@ -8,8 +8,8 @@
 namespace axial::targets {
 namespace {
 
-constexpr int kSamples = 3;   // of the pattern, along each side of a pixel
-constexpr int kLargest = 96;  // side of the compared picture [px]
+constexpr int kFineSamples = 3;  // of the pattern, along each side of a pixel
+constexpr int kLargest = 96;     // side of the compared picture [px]
 
 // Correlation of two pictures where `mask` is set.
 double correlation(const cv::Mat1f& a, const cv::Mat1f& b, const cv::Mat1b& mask) {
@@ -34,7 +34,7 @@ double agreement(const cv::Mat1f& picture, const cv::Rect& box, const ToPattern&
                       std::max(1, static_cast<int>(seen.height / shrink)));
   cv::Mat1f there;
   cv::resize(picture(seen), there, size, 0, 0, cv::INTER_AREA);
-  cv::Mat1f drawn(size.height * kSamples, size.width * kSamples);
+  cv::Mat1f drawn(size.height * kFineSamples, size.width * kFineSamples);
   cv::Mat1b mask(size, std::uint8_t{255});
   const double step_x = static_cast<double>(seen.width) / drawn.cols;
   const double step_y = static_cast<double>(seen.height) / drawn.rows;
@@ -43,9 +43,9 @@ double agreement(const cv::Mat1f& picture, const cv::Rect& box, const ToPattern&
       const Eigen::Vector2d place =
           to_pattern({seen.x - 0.5 + (x + 0.5) * step_x, seen.y - 0.5 + (y + 0.5) * step_y});
       drawn(y, x) = pattern.white(place.x(), place.y()) ? 1.0f : 0.0f;
-      if (place.cwiseAbs().maxCoeff() > half) mask(y / kSamples, x / kSamples) = 0;
+      if (place.cwiseAbs().maxCoeff() > half) mask(y / kFineSamples, x / kFineSamples) = 0;
     }
-  const double sigma = std::max(0.3, blur / shrink) * kSamples;
+  const double sigma = std::max(0.3, blur / shrink) * kFineSamples;
   cv::GaussianBlur(drawn, drawn, {}, sigma, sigma, cv::BORDER_REPLICATE);
   cv::resize(drawn, drawn, size, 0, 0, cv::INTER_AREA);
   return correlation(there, drawn, mask);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "targets/square_finder.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -219,8 +220,11 @@ std::optional<Detection> measure(const cv::Mat1f& grey, const Corners& outline,
   if (!decoded) return std::nullopt;
   // identify() counts the turns that bring the bits of the picture to those of the dictionary.
   const auto first = static_cast<std::ptrdiff_t>((4 - decoded->turns) % 4);
-  std::ranges::rotate(refined->corners, refined->corners.begin() + first);
-  std::ranges::rotate(refined->points, refined->points.begin() + first);
+  const auto turn = [first](auto& four) {
+    std::rotate(four.begin(), four.begin() + first, four.end());
+  };
+  turn(refined->corners);
+  turn(refined->points);
   const Pattern pattern(family, decoded->number);
   const double agrees = agreement_of(grey, *refined, pattern);
   if (agrees < kLeastAgreement) return std::nullopt;

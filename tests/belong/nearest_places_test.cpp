@@ -71,7 +71,7 @@ TEST(NearestPlaces, OfHugeFacesAreFound) {
 
 TEST(NearestPlaces, DoNotDependOnThreads) {
   const Mesh mesh = test::ground(0, 40);
-  const auto nearest_with = [&](int threads) {
+  const auto nearest_with = [&](unsigned threads) {
     const ThreadLimit limit(threads);
     return nearest_places(shape_of(mesh), some_places(), 0.2);
   };

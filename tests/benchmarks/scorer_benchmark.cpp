@@ -105,7 +105,7 @@ void score(benchmark::State& state, bool behind_port, InstructionSet set, bool g
     state.SetIterationTime(spent);
     seconds += spent;
   }
-  const double scores = static_cast<double>(state.iterations() * kChunk * kScoresPerPixel);
+  const double scores = static_cast<double>(state.iterations()) * kChunk * kScoresPerPixel;
   const double samples_per_ns = kSamplesPerScore * scores / (seconds * 1e9);
   const MachineLimits limits = machine_limits(set);
   const double ghz = clock_ghz();

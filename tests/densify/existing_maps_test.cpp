@@ -48,7 +48,7 @@ class ExistingMapsTest : public testing::Test {
 };
 
 TEST_F(ExistingMapsTest, TellsTheOriginOfEachMap) {
-  for (const std::size_t image : {0, 1, 2}) write_map(image);
+  for (const std::size_t image : {0u, 1u, 2u}) write_map(image);
   make_foreign(1);
   make_damaged(2);
   const ExistingMaps maps = found();
@@ -61,7 +61,7 @@ TEST_F(ExistingMapsTest, TellsTheOriginOfEachMap) {
 }
 
 TEST_F(ExistingMapsTest, ForeignMapsAreOverwrittenOnlyIfAllowed) {
-  for (const std::size_t image : {0, 1}) write_map(image);
+  for (const std::size_t image : {0u, 1u}) write_map(image);
   make_damaged(0);
   EXPECT_NO_THROW(check_overwriting(project_, false, found()));
   make_foreign(1);

@@ -171,7 +171,7 @@ TEST(MemoryPlan, NoStageNeedsMoreThanTheRoom) {
   with_masks.project.views[3].mask = "mask.png";
   for (const Case& from : {Case(), without_adjusting, with_masks})
     for (const std::uint64_t room : rooms(from))
-      for (const std::size_t threads : {1, 2, 16}) {
+      for (const std::size_t threads : {1u, 2u, 16u}) {
         const MemoryPlan plan = share_out(from.bytes(), from.lists(), room, threads);
         EXPECT_LE(Held(from, plan).most(), room) << threads;
       }

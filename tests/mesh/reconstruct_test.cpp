@@ -91,7 +91,7 @@ TEST_P(Reconstruct, ThreadsDoNotChangeTheMesh) {
       meshes.push_back(reconstruct(cloud, scene, options));
     }
   }
-  for (const std::size_t k : {0, 1}) {
+  for (const std::size_t k : {0u, 1u}) {
     EXPECT_EQ(meshes[k].vertices, meshes[k + 2].vertices);
     EXPECT_EQ(meshes[k].faces, meshes[k + 2].faces);
   }

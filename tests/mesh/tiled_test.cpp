@@ -41,7 +41,7 @@ std::multiset<std::vector<float>> faces_of(const Mesh& mesh) {
     std::array<std::vector<float>, 3> corners;
     for (std::size_t k = 0; k < 3; ++k)
       corners[k].assign(mesh.vertices[face[k]].begin(), mesh.vertices[face[k]].end());
-    std::ranges::rotate(corners, std::ranges::min_element(corners));
+    std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
     std::vector<float> all;
     for (const auto& corner : corners) all.insert(all.end(), corner.begin(), corner.end());
     faces.insert(all);
@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(Media, Tiled, testing::Bool());
 TEST_P(Tiled, ASphereInTilesHasTheFacesOfASphereInOnePiece) {
   const PointCloud cloud = test::points_on_sphere(scene_, 6000);
   const Mesh whole = reconstruct(cloud, scene_, merging(0));
-  for (const std::size_t tiles : {1, 2, 5})
+  for (const std::size_t tiles : {1u, 2u, 5u})
     EXPECT_EQ(faces_of(in_tiles(cloud, tiles, 0)), faces_of(whole)) << tiles << " tiles";
 }
 
@@ -126,7 +126,7 @@ TEST_P(Tiled, RunsForTilesGiveTheBytesOfOneRun) {
   }
   std::filesystem::remove_all(folder_ / "tiles");
   const ThreadLimit limit(4);
-  for (const std::size_t tile : {2, 0, 1})
+  for (const std::size_t tile : {2u, 0u, 1u})
     reconstruct_tile(tile, portions_of(cloud), scene_, merging(2), run_of(3));
   // All tiles are there: the cloud is not read again.
   const CloudSource none = [](const io::CloudPortionSink&) { FAIL(); };

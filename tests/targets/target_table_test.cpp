@@ -48,7 +48,7 @@ TEST_F(TargetTable, WrongLinesAreNamed) {
            {"3,a\n4,a", ":2: the label 'a' occurs twice"},
            {"3,a\n3,b", ":2: the code 3 occurs twice"}}) {
     const std::string message =
-        test::error_naming(folder_ / "table.csv", [&] { read(text, "4X4_50"); });
+        test::error_naming(folder_ / "table.csv", [&, &text = text] { read(text, "4X4_50"); });
     EXPECT_THAT(message, testing::HasSubstr("table.csv" + (expected[0] == ':' ? expected : "")));
     EXPECT_THAT(message, testing::HasSubstr(expected));
   }

@@ -48,8 +48,8 @@ Pack<Abi> lane_depth_near(const float* depths, const LaneImages<Abi>& image,
       at.visible && x >= T(0) && y >= T(0) && x <= image.width - T(1) && y <= image.height - T(1);
   T found;
   Part px = x.part, py = y.part;
-  stdx::where(!inside.part, px) = Part(0.0f);
-  stdx::where(!inside.part, py) = Part(0.0f);
+  px = blend(inside.part, px, Part(0.0f));
+  py = blend(inside.part, py, Part(0.0f));
   const Ints width = stdx::static_simd_cast<Ints>(image.width.part);
   const Ints height = stdx::static_simd_cast<Ints>(image.height.part);
   const Ints column = stdx::min(stdx::static_simd_cast<Ints>(px), width - 2);
@@ -63,15 +63,15 @@ Pack<Abi> lane_depth_near(const float* depths, const LaneImages<Abi>& image,
       const Part value = detail::gather_floats<Abi>(depths, index);
       Part weight = (dx ? fx : Part(1.0f) - fx) * (dy ? fy : Part(1.0f) - fy) + Part(1e-6f);
       const auto near = stdx::abs(value - expected.part) < kSameSurface * expected.part;
-      stdx::where(!near, weight) = Part(0.0f);
+      weight = blend(near, weight, Part(0.0f));
       sum += weight * value;
       weights += weight;
     }
   }
   const auto some = weights > Part(0.0f);
-  stdx::where(!some, weights) = Part(1.0f);
+  weights = blend(some, weights, Part(1.0f));
   Part depth = sum / weights;
-  stdx::where(!some || !inside.part, depth) = Part(0.0f);
+  depth = blend(some && inside.part, depth, Part(0.0f));
   found.part = depth;
   return found;
 }

@@ -139,8 +139,7 @@ Pack<Abi> lane_zncc(const ReferencePatch& patch, const std::uint32_t* words,
   if (stdx::none_of(used.part)) return T(kNoCorrelation);
 
   const auto fixed = [&](const T& value, float otherwise) {
-    Part part = value.part;
-    stdx::where(!used.part, part) = Part(otherwise);
+    const Part part = blend(used.part, value.part, Part(otherwise));
     return stdx::static_simd_cast<Ints>(part * Part(kPositionUnit));
   };
   const Ints xu = fixed(warp(0, 0), 0), xv = fixed(warp(0, 1), 0);

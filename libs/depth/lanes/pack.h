@@ -88,12 +88,32 @@ struct Pack {
 
 // Returns `yes` in the lanes where `mask` is true and `no` in the other lanes. Always inlined, so
 // that no two translation units share a compiled copy, not even two units for the same instruction
-// set (tests/depth/shared_names_test.py).
+// set (tests/depth/shared_names_test.py). Compiled by clang, stdx::where of libstdc++ 12 takes all
+// lanes of AVX-512 from the same register.
+template <class Abi>
+[[gnu::always_inline]] inline stdx::simd<float, Abi> blend(const stdx::simd_mask<float, Abi>& mask,
+                                                           const stdx::simd<float, Abi>& yes,
+                                                           stdx::simd<float, Abi> no) {
+#ifdef __AVX512F__
+  using Part = stdx::simd<float, Abi>;
+  if constexpr (Part::size() == 16)
+    return Part(_mm512_mask_blend_ps(static_cast<__mmask16>(mask.__to_bitset().to_ulong()),
+                                     static_cast<__m512>(no), static_cast<__m512>(yes)));
+  else if constexpr (Part::size() == 8)
+    return Part(_mm256_mask_blend_ps(static_cast<__mmask8>(mask.__to_bitset().to_ulong()),
+                                     static_cast<__m256>(no), static_cast<__m256>(yes)));
+  else
+#endif
+  {
+    stdx::where(mask, no) = yes;
+    return no;
+  }
+}
+
 template <class Abi>
 [[gnu::always_inline]] inline Pack<Abi> select(const PackMask<Abi>& mask, const Pack<Abi>& yes,
-                                               Pack<Abi> no) {
-  stdx::where(mask.part, no.part) = yes.part;
-  return no;
+                                               const Pack<Abi>& no) {
+  return Pack<Abi>(blend(mask.part, yes.part, no.part));
 }
 
 // The square root and the absolute value of each lane.

@@ -3,6 +3,8 @@
 
 namespace axial::depth::lanes {
 
+Scorer::~Scorer() = default;
+
 std::vector<InstructionSet> available_instruction_sets() {
   std::vector<InstructionSet> sets{InstructionSet::scalar, InstructionSet::baseline};
 #ifdef AXIAL_WIDE_LANES

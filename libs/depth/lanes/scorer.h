@@ -71,7 +71,7 @@ struct SceneTables {
 // scorer at the same time.
 class Scorer {
  public:
-  virtual ~Scorer() = default;
+  virtual ~Scorer();  // in scorer.cpp, so that no two instruction sets share it
   // Sets entry k of each array in `scores` for the pair k. `neighbours`: the surface at
   // neighbouring pixels, for the smoothness factor. Preconditions: pairs.plane are indices of valid
   // planes; pairs.view are below the number of views in the tables.

@@ -14,6 +14,7 @@
 #include "base/output_name.h"
 #include "io/openmvs/scene_files.h"
 #include "io/ply/ply.h"
+#include "private/textured/gltf_file.h"
 
 namespace axial::io {
 namespace {
@@ -34,7 +35,7 @@ void write_mesh_obj(const std::filesystem::path& path, const Mesh& mesh, const L
 static_assert(std::endian::native == std::endian::little, "glTF is little-endian");
 static_assert(sizeof(Eigen::Vector3f) == 12 && sizeof(Mesh{}.faces[0]) == 12);
 
-constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2, kJson = 0x4E4F534A, kBinary = 0x004E4942;
+constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2;
 
 struct Bounds {
   Eigen::Vector3f low = Eigen::Vector3f::Constant(std::numeric_limits<float>::max());
@@ -93,11 +94,11 @@ void write_mesh_glb(const std::filesystem::path& path, const Mesh& mesh, const L
   std::string bytes;
   bytes.reserve(whole);
   for (const std::uint64_t number : {std::uint64_t{kMagic}, std::uint64_t{kVersion}, whole,
-                                     std::uint64_t{json.size()}, std::uint64_t{kJson}})
+                                     std::uint64_t{json.size()}, std::uint64_t{kGlbJson}})
     append(bytes, static_cast<std::uint32_t>(number));
   bytes += json;
   append(bytes, static_cast<std::uint32_t>(binary));
-  append(bytes, kBinary);
+  append(bytes, kGlbBinary);
   append(bytes, mesh.vertices.data(), 12 * mesh.vertices.size());
   append(bytes, mesh.faces.data(), 12 * mesh.faces.size());
   write_atomically(path, bytes);

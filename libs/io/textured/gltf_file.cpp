@@ -109,7 +109,6 @@ std::string GltfFile::read_json_part() {
 // The header of a GLB has 12 bytes: "glTF", version, length. Each chunk has a length and a type in
 // front of its bytes.
 void GltfFile::find_chunks(std::uint64_t size) {
-  constexpr std::uint32_t kJson = 0x4E4F534A, kBinary = 0x004E4942;
   if (size < 12) fail_in(name_, "truncated: a GLB has at least 12 bytes");
   const std::string header = read_bytes(0, 12);
   const auto version = value_of<std::uint32_t>(header, 4);
@@ -125,10 +124,10 @@ void GltfFile::find_chunks(std::uint64_t size) {
     const auto type = value_of<std::uint32_t>(chunk, 4);
     if (place.size > size - place.first)
       fail_in(name_, "truncated: a chunk of {} bytes ends outside of the file", place.size);
-    if (!json_chunk_ && type != kJson) fail_in(name_, "the first chunk is not JSON");
+    if (!json_chunk_ && type != kGlbJson) fail_in(name_, "the first chunk is not JSON");
     if (!json_chunk_)
       json_chunk_ = place;
-    else if (type == kBinary && !binary_)
+    else if (type == kGlbBinary && !binary_)
       binary_ = place;
     at = place.first + place.size;
   }

@@ -17,6 +17,9 @@
 
 namespace axial::io {
 
+// Types of the chunks of a GLB.
+inline constexpr std::uint32_t kGlbJson = 0x4E4F534A, kGlbBinary = 0x004E4942;
+
 // A JSON object of a glTF. Messages name the file and the object: "a.glb: nodes[3].mesh is -1". A
 // key that is absent gives an empty result; a value of another type gives an Error. The object
 // refers to the GltfFile that made it.
