@@ -103,13 +103,11 @@ endfunction()
 
 # For files that instantiate the sweep for all cameras. With its default limits of growth for one
 # file, the compiler would not even inline Eigen's products in the innermost loop.
-if(AXIAL_SANITIZE)
-  set(AXIAL_INLINE_ALL)
-elseif(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
-  set(AXIAL_INLINE_ALL -mllvm -inline-threshold=2000)
-elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(AXIAL_INLINE_ALL --param=inline-unit-growth=400 --param=large-function-growth=1000
     --param=max-inline-insns-single=400)
+elseif(NOT AXIAL_SANITIZE)
+  set(AXIAL_INLINE_ALL -mllvm -inline-threshold=2000)
 endif()
 
 # add_axial_library(io SOURCES ply/ply_read.cpp [APART json.cpp] LINK scene opencv_core) adds libs/io

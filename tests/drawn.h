@@ -7,7 +7,8 @@
 
 namespace axial::test {
 
-// Draws the last coordinate first.
+// Draws the last coordinate first, as GCC evaluates arguments: the limits of the statistical tests
+// were chosen on these numbers.
 template <int kRows, class Distribution, class Engine>
 Eigen::Matrix<typename Distribution::result_type, kRows, 1> drawn(Distribution& distribution,
                                                                   Engine& engine) {

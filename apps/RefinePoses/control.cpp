@@ -76,11 +76,11 @@ class TargetTable {
 
   std::vector<pose::Target> take() {
     std::vector<pose::Target> targets;
-    for (auto& entry : by_key_) {
-      std::erase_if(entry.second.images, [&](const auto& image) {
-        return repeated_.contains({entry.first, image.image});
+    for (auto& [key, target] : by_key_) {
+      std::erase_if(target.images, [&, &key = key](const auto& image) {
+        return repeated_.contains({key, image.image});
       });
-      targets.push_back(std::move(entry.second));
+      targets.push_back(std::move(target));
     }
     return targets;
   }

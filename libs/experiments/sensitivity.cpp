@@ -120,16 +120,15 @@ std::vector<Row> rows_of(bool quick) {
 std::vector<Part> parts(const Chain& chain, bool quick) {
   const Json programs = programs_of_the_chain();
   std::vector<Part> all;
-  for (const auto& row : rows_of(quick)) {
-    const Mistake& mistake = row.mistake;
-    const Study one = study(quick, row.distance);
+  for (const auto& [distance, mistake] : rows_of(quick)) {
+    const Study one = study(quick, distance);
     const Json inputs{{"version", 1},
                       {"programs", programs},
                       {"scene", to_json(one.scene)},
                       {"evaluation", to_json(one.evaluation)},
                       {"mistake", to_json(mistake)}};
-    all.push_back({part_name(row.distance, mistake), inputs,
-                   [chain, one, mistake] { return measure(chain, one, mistake); }});
+    all.push_back({part_name(distance, mistake), inputs,
+                   [chain, one, mistake = mistake] { return measure(chain, one, mistake); }});
   }
   return all;
 }

@@ -88,8 +88,8 @@ struct Pack {
 
 // Returns `yes` in the lanes where `mask` is true and `no` in the other lanes. Always inlined, so
 // that no two translation units share a compiled copy, not even two units for the same instruction
-// set (tests/depth/shared_names_test.py). Compiled by clang, stdx::where of libstdc++ 12 takes all
-// lanes of AVX-512 from the same register.
+// set (tests/depth/shared_names_test.py). AVX-512 needs its own instruction: under clang,
+// stdx::where of libstdc++ 12 takes all lanes from one of its two operands.
 template <class Abi>
 [[gnu::always_inline]] inline stdx::simd<float, Abi> blend(const stdx::simd_mask<float, Abi>& mask,
                                                            const stdx::simd<float, Abi>& yes,
@@ -110,6 +110,7 @@ template <class Abi>
   }
 }
 
+// The same for packs.
 template <class Abi>
 [[gnu::always_inline]] inline Pack<Abi> select(const PackMask<Abi>& mask, const Pack<Abi>& yes,
                                                const Pack<Abi>& no) {
