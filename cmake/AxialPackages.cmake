@@ -34,8 +34,11 @@ and water. It uses the files and options of OpenMVS, and COLMAP for poses.")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# The scripts run python3 and colmap.
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3, colmap")
+# The scripts run python3 and colmap. The programs load the image codecs of OpenCV when they first need them
+# (libs/io/images/opencv_codecs.cpp). Debian's package has the name of the library: libopencv-imgcodecs406.
+get_target_property(codecs opencv_imgcodecs IMPORTED_SONAME_RELEASE)
+string(REGEX REPLACE "^(.+)_(.+)[.]so[.](.+)$" "\\1-\\2\\3" codecs ${codecs})
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3, colmap, ${codecs}")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "snakemake, slurm-client")  # for axial-reconstruct --cluster
 if(AXIAL_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
@@ -47,7 +50,7 @@ numpy, the files of AxialMVS, and its stages from photographs to a mesh.")
   # The module is for one version of Python.
   math(EXPR next "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-    "python3-numpy, python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next})")
+    "${codecs}, python3-numpy, python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next})")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-matplotlib)
 endif()
 include(CPack)

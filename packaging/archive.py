@@ -20,6 +20,8 @@ import tempfile
 # users and hosts, and its loader.
 GLIBC = re.compile(r"ld-linux|(libc|libm|libmvec|libdl|libpthread|librt|libresolv|libutil|libanl|libnsl|"
                    r"libnss_\w+|libBrokenLocale|libthread_db|libc_malloc_debug)\.so")
+# The library that the programs load when they first need it (libs/io/images/opencv_codecs.cpp).
+LOADED_LATER = re.compile(rb"\0(libopencv_imgcodecs\.so\.\d+)\0")
 LIBRARIES = "lib/axialmvs"
 NOTICES = "share/doc/axialmvs/libraries"
 DATA = {"gdal": pathlib.Path("/usr/share/gdal"), "proj": pathlib.Path("/usr/share/proj")}
@@ -47,9 +49,12 @@ def programs_of(prefix):
 
 
 def loaded_by(program):
-    """The libraries that the loader of this system gives the program, without glibc: {name: path}."""
+    """The libraries that the loader of this system gives the program, without glibc: {name: path}. Libraries that the
+    program loads later are among them, because they are loaded before the program starts."""
+    later = sorted({name.decode() for name in LOADED_LATER.findall(program.read_bytes())})
+    preload = f"LD_PRELOAD={' '.join(later)}"
     libraries = {}
-    for line in output_of("env", "-u", "LD_LIBRARY_PATH", "ldd", program).splitlines():
+    for line in output_of("env", "-u", "LD_LIBRARY_PATH", preload, "ldd", program).splitlines():
         name, arrow, path = line.strip().partition(" => ")
         if not arrow or GLIBC.match(pathlib.Path(name).name):
             continue

@@ -3,13 +3,13 @@
 # Installs missing packages, builds, and runs all tests under CTest. Each unit test is built once:
 # the tests of base, lens, io, scene, picture and cloud with AddressSanitizer and
 # UndefinedBehaviorSanitizer ("sanitized/..."), the other tests in the release build, like the
-# programs. The build with sanitizers also gives every file reader wrong input for 5 seconds
+# programs. The build with sanitizers also gives every file reader wrong input for 2 seconds
 # ("fuzz/...").
 #
 #   bash tests/run.sh [--all] [CTEST-OPTION...]
 #
-# --all: builds every unit test in both builds, and runs the program tests that take minutes. Other
-# arguments go to ctest: tests/run.sh -R io.
+# --all: builds every unit test in both builds, runs the program tests that take minutes, and gives
+# the readers wrong input for 30 seconds each. Other arguments go to ctest: tests/run.sh -R io.
 # One CTest run covers both builds, so its summary at the end counts all tests.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -31,5 +31,5 @@ cmake --build --preset release
 cmake --build --preset sanitize --target axial_tests
 
 printf 'subdirs(release clang)\n' >build/CTestTestfile.cmake
-# One test more than there are processors: a test of a workflow waits most of its time.
-exec ctest --test-dir build --parallel "$(($(nproc) + 1))" --no-tests=error "$@"
+# Two tests more than there are processors: tests of workflows wait most of their time.
+exec ctest --test-dir build --parallel "$(($(nproc) + 2))" --no-tests=error "$@"

@@ -3,9 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <opencv2/imgcodecs.hpp>
+#include <vector>
 
 #include "base/base64.h"
+#include "io/images/image.h"
 
 namespace axial::picture {
 namespace {
@@ -39,8 +40,7 @@ const char* name(Anchor anchor) {
 }  // namespace
 
 std::string png_in_base64(const cv::Mat3b& bgr) {
-  std::vector<unsigned char> png;
-  cv::imencode(".png", bgr, png);
+  const std::vector<unsigned char> png = io::png_bytes(bgr, "picture");
   return base64({reinterpret_cast<const char*>(png.data()), png.size()});
 }
 

@@ -32,7 +32,7 @@ def options_of(**changes):
 def reconstruct_command(*options, source=("--images", "images"), lens="lens", housing="housing", out="out",
                         programs=BIN):
     """The words of a command `reconstruct`."""
-    return [sys.executable, "-B", str(PIPELINE / "reconstruct"), *map(str, source), "--lens", str(lens), "--housing",
+    return [sys.executable, str(PIPELINE / "reconstruct"), *map(str, source), "--lens", str(lens), "--housing",
             str(housing), "-o", str(out), "--programs", str(programs), *map(str, options)]
 
 
@@ -81,6 +81,6 @@ class ColmapModelCase(InFolder):
             self.write(f"images/{number}.png", png([bytes(4)] * 3))
 
     def run_it(self, *more):
-        command = [sys.executable, "-B", str(PIPELINE / "colmap-model"), "--images", "images",
+        command = [sys.executable, str(PIPELINE / "colmap-model"), "--images", "images",
                    "--camera-model", "PINHOLE", "--camera-parameters", "1,2,3,4", "-o", "out", *more]
         return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60)

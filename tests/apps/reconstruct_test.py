@@ -20,7 +20,7 @@ STEPS = ["features", "lens", "matches", "poses", "refine", "import", "densify", 
 PAGE = pathlib.Path(BIN).resolve().parent / "share" / "axialmvs" / "view" / "viewer.js"
 if PAGE.exists():
     STEPS.insert(-1, "page")
-COARSE_MESH = ("--mesh=-d 4", "--refine-mesh=--scales 1")
+QUICK = ("--densify=--resolution-level 1 --min-resolution 200", "--mesh=-d 4", "--refine-mesh=--scales 1")
 
 
 @unittest.skipUnless(shutil.which("colmap"), "COLMAP is not installed")
@@ -52,7 +52,7 @@ class Reconstruct(unittest.TestCase):
     def killed_at(self, step, out):
         """Kills the pipeline with all its children soon after `step` began. Returns its output
         until then."""
-        process = self.start(out, *COARSE_MESH, start_new_session=True)
+        process = self.start(out, *QUICK, start_new_session=True)
         said = ""
         for line in process.stdout:
             said += line
@@ -69,11 +69,11 @@ class Reconstruct(unittest.TestCase):
             said = self.killed_at(step, out)
             # The step before this one was killed, so this run had to finish it.
             self.assertGreaterEqual(said.count("done before"), number - 1, said)
-        ended = self.ended(out, *COARSE_MESH)
+        ended = self.ended(out, *QUICK)
         self.assertEqual(ended.returncode, 0, ended.stderr)
         self.assertGreaterEqual(ended.stdout.count("done before"), len(STEPS) - 1, ended.stdout)
         self.check(out)
-        again = self.ended(out, *COARSE_MESH)
+        again = self.ended(out, *QUICK)
         self.assertEqual(again.stdout.count("done before"), len(STEPS), again.stdout)
 
     def check(self, out):
@@ -83,7 +83,7 @@ class Reconstruct(unittest.TestCase):
         self.assertIn("mean distance to the truth", (out / "report.md").read_text())
         self.assertIn(f"<td>{report['rms_after_px']:.3f}</td>", (out / "report.html").read_text())
         evaluation = read_json(out, "evaluation.json")
-        self.assertGreater(evaluation["accuracy"]["count"], 50000)
+        self.assertGreater(evaluation["accuracy"]["count"], 12500)  # 50,000 at full resolution
         self.assertLess(evaluation["accuracy"]["median"], 0.002)
         self.assertTrue((out / "scene_textured.glb").read_bytes().startswith(b"glTF"))
         for kind in ("dem", "ortho", "views"):

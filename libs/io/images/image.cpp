@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/quiet_errors.h"
 #include "private/images/image_codecs.h"
+#include "private/images/opencv_codecs.h"
 #include "scene/resolution.h"
 
 namespace axial::io {
@@ -66,13 +67,12 @@ void require_known_format(std::string_view bytes, const fs::path& path) {
 }
 
 // Decodes formats that image_codecs.h does not handle.
-cv::Mat decode_by_opencv(const std::string& bytes, const fs::path& path, int flags) {
+cv::Mat decode_other(const std::string& bytes, const fs::path& path, int flags) {
   require_known_format(bytes, path);
   const QuietErrors quiet;  // OpenCV prints messages besides throwing exceptions
-  const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
   cv::Mat image;
   try {
-    image = cv::imdecode(raw, flags);
+    image = decode_by_opencv(bytes, flags);
   } catch (const cv::Exception& error) {
     fail_in(path, "cannot be decoded: {}", error.err);
   }
@@ -83,14 +83,14 @@ cv::Mat decode_by_opencv(const std::string& bytes, const fs::path& path, int fla
 cv::Mat read_as_stored(const fs::path& path) {
   const std::string bytes = read_image_bytes(path);
   if (!is_tiff(bytes)) fail_in(path, "is not a TIFF");
-  return decode_by_opencv(bytes, path, cv::IMREAD_UNCHANGED);
+  return decode_other(bytes, path, cv::IMREAD_UNCHANGED);
 }
 
 // Returns three channels if the image may have colours.
 cv::Mat decode_labels(const std::string& bytes, const fs::path& path) {
   if (is_png(bytes)) return decode_png_labels(bytes, path);
   if (is_jpeg(bytes)) return decode_jpeg(bytes, path).pixels;
-  return decode_by_opencv(bytes, path, cv::IMREAD_UNCHANGED);
+  return decode_other(bytes, path, cv::IMREAD_UNCHANGED);
 }
 
 // WebP, JPEG 2000, BMP and so on.
@@ -98,7 +98,7 @@ Photograph decode_rare(const std::string& bytes, const fs::path& path) {
   // The fourth byte of a BMP pixel is not alpha.
   const int flags = bytes.starts_with("BM") ? cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION
                                             : cv::IMREAD_UNCHANGED;
-  cv::Mat pixels = decode_by_opencv(bytes, path, flags);
+  cv::Mat pixels = decode_other(bytes, path, flags);
   if (pixels.depth() != CV_8U && pixels.depth() != CV_16U)
     fail_in(path,
             "pixels are floating-point or signed numbers; photographs must have unsigned numbers "
@@ -125,18 +125,23 @@ cv::Mat without_copies(const cv::Mat& image) {
   return same ? channels[0] : image;
 }
 
-void write_encoded(const fs::path& path, const std::string& extension, const cv::Mat& image,
-                   const std::vector<int>& parameters) {
+std::vector<unsigned char> encoded(const fs::path& path, const std::string& extension,
+                                   const cv::Mat& image, const std::vector<int>& parameters) {
   const QuietErrors quiet;  // OpenCV prints messages besides throwing exceptions
-  std::vector<unsigned char> bytes;
-  bool encoded = false;
   try {
-    encoded = cv::imencode(extension, image, bytes, parameters);
+    std::vector<unsigned char> bytes = encode_by_opencv(extension, image, parameters);
+    if (!bytes.empty()) return bytes;
   } catch (const cv::Exception& error) {
     fail_in(path, "cannot be encoded: {}", error.err);
   }
-  if (!encoded) fail_in(path, "cannot be encoded as {}", extension);
-  write_atomically(path, std::string_view(reinterpret_cast<char*>(bytes.data()), bytes.size()));
+  fail_in(path, "cannot be encoded as {}", extension);
+}
+
+void write_encoded(const fs::path& path, const std::string& extension, const cv::Mat& image,
+                   const std::vector<int>& parameters) {
+  const auto bytes = encoded(path, extension, image, parameters);
+  write_atomically(path,
+                   std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
 }  // namespace
@@ -268,6 +273,10 @@ void write_jpeg(const fs::path& path, const cv::Mat3b& image, int quality) {
 
 void write_png(const fs::path& path, const cv::Mat& image) {
   write_encoded(path, ".png", image, {});
+}
+
+std::vector<unsigned char> png_bytes(const cv::Mat& image, const fs::path& name) {
+  return encoded(name, ".png", image, {});
 }
 
 }  // namespace axial::io

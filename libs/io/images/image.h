@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <string>
+#include <vector>
 
 #include "axial/io.h"
 
@@ -77,5 +78,8 @@ void write_float_tiff(const std::filesystem::path& path, const cv::Mat& image);
 // cannot be written.
 void write_jpeg(const std::filesystem::path& path, const cv::Mat3b& image, int quality);
 void write_png(const std::filesystem::path& path, const cv::Mat& image);
+
+// Returns the bytes that write_png() would write. Errors begin with `name`.
+std::vector<unsigned char> png_bytes(const cv::Mat& image, const std::filesystem::path& name);
 
 }  // namespace axial::io

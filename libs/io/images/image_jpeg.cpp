@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "private/images/image_codecs.h"
+#include "private/images/opencv_codecs.h"
 
 namespace axial::io {
 
@@ -138,8 +139,7 @@ Photograph decode_jpeg(std::string_view bytes, const fs::path& path) {
   if (!read_pixels(reading, bytes))
     fail_in(path, "cannot be decoded: {}", reading.error.text.data());
   if (reading.pixels.channels() == 4) {  // CMYK: OpenCV converts it
-    const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
-    return {cv::imdecode(raw, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION), {}};
+    return {decode_by_opencv(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION), {}};
   }
   return {reading.pixels, {}};
 }

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <fstream>
 #include <functional>
-#include <opencv2/imgcodecs.hpp>
 #include <utility>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_extension.h"
+#include "io/images/image.h"
 #include "private/textured/textured_writers.h"
 
 namespace axial::io {
@@ -59,12 +59,6 @@ void check(const TexturedMesh& mesh, const std::string& file) {
   }
   for (std::size_t v = 0; v < mesh.mesh.vertices.size(); ++v)
     if (!mesh.mesh.vertices[v].allFinite()) fail_in(file, "vertex {} is not finite", v);
-}
-
-Bytes png_bytes(const cv::Mat3b& image, const std::string& file) {
-  Bytes bytes;
-  if (!cv::imencode(".png", image, bytes)) fail_in(file, "a texture cannot be encoded");
-  return bytes;
 }
 
 void write_file(const fs::path& path, const std::function<void(std::ostream&)>& write) {
