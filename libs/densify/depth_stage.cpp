@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <stop_token>
+#include <utility>
 #include <vector>
 
 #include "densify/agreement_check.h"
@@ -30,8 +32,9 @@ struct Task {
 // Makes the maps of the stages. It must live while the stages run.
 class MapMaker {
  public:
-  MapMaker(const Project& project, const MatchOptions& options, survey::ImageStore& images)
-      : project_(project), options_(options), images_(images) {}
+  MapMaker(const Project& project, const MatchOptions& options, survey::ImageStore& images,
+           std::stop_token stop)
+      : project_(project), options_(options), images_(images), stop_(std::move(stop)) {}
 
   std::vector<Stage> stages() const {
     const std::vector<std::string> names = stage_names(options_);
@@ -92,6 +95,7 @@ class MapMaker {
     const cv::Mat1b& mask = result->pixels[0]->mask;
     result->input = {&result->views[0], result->sources, result->points,
                      mask.empty() ? nullptr : &mask, options_.projection};
+    result->input.stop = stop_;
     return result;
   }
 
@@ -143,6 +147,7 @@ class MapMaker {
   const Project& project_;
   const MatchOptions& options_;
   survey::ImageStore& images_;
+  std::stop_token stop_;
 };
 
 }  // namespace
@@ -150,7 +155,7 @@ class MapMaker {
 void make_depth_maps(const Run& run, const MatchOptions& options, const StageJob* job,
                      const std::filesystem::path& report) {
   const Project& project = run.project;
-  const MapMaker maker(project, options, run.images);
+  const MapMaker maker(project, options, run.images, run.context.stop_token());
   StageRun stages;
   stages.images = project.part;
   stages.all_images = project.references;

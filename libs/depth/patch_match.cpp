@@ -40,6 +40,7 @@ struct LevelState {
 Level make_level(const MatchInput& input, int halvings) {
   Level level;
   const auto add = [&](const MatchImage& view) {
+    check_stop(input.stop);
     const int width = std::max(1, view.grey.cols >> halvings);
     const int height = std::max(1, view.grey.rows >> halvings);
     cv::Mat1b image = view.grey;
@@ -49,7 +50,10 @@ Level make_level(const MatchInput& input, int halvings) {
   };
   add(*input.reference);
   for (const MatchImage* source : input.sources) add(*source);
-  for (std::size_t i = 1; i < level.images.size(); ++i) level.quads.emplace_back(level.images[i]);
+  for (std::size_t i = 1; i < level.images.size(); ++i) {
+    check_stop(input.stop);
+    level.quads.emplace_back(level.images[i]);
+  }
   return level;
 }
 
@@ -72,6 +76,7 @@ void run_sweeps_with(const MatchInput& input, const Level& level,
                      const PatchMatchOptions& options, SweepInput sweep, int sweeps,
                      PlaneMap& planes) {
   const auto sources = make_sources(input, level, cameras, maps);
+  sweep.stop = input.stop;
   const auto run_all = [&](const auto& matcher) {
     for (int i = 0; i < sweeps; ++i, ++sweep.sweep) {
       const std::uint64_t scores = Sweep(matcher, planes, options, sweep).run();

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <span>
+#include <stop_token>
 
 #include "axial/depth.h"
 #include "scene/camera_list.h"
@@ -32,6 +33,8 @@ struct MatchInput {
   // If not null, this number is increased by the number of computed scores. A score is for one
   // plane in one view.
   std::uint64_t* scores = nullptr;
+  // After a request to stop, both functions throw Stopped, while they match within a row of pixels.
+  std::stop_token stop = {};
 };
 
 // Computes the photometric depth map of the reference view, first on the sub-resolution levels,

@@ -82,11 +82,15 @@ class Sweep {
     const int top = strips_.top(number), bottom = strips_.bottom(number);
     Strip strip{number, {}, 0};
     if (input_.sweep % 2 == 0) {
-      for (int y = top; y < bottom; ++y)
+      for (int y = top; y < bottom; ++y) {
+        check_stop(input_.stop);
         for (int x = 0; x < map_.width; ++x) visit(strip, x, y, -1);
+      }
     } else {
-      for (int y = bottom - 1; y >= top; --y)
+      for (int y = bottom - 1; y >= top; --y) {
+        check_stop(input_.stop);
         for (int x = map_.width - 1; x >= 0; --x) visit(strip, x, y, +1);
+      }
     }
     return strip.scores;
   }

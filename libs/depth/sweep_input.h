@@ -4,8 +4,16 @@
 
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <stop_token>
+
+#include "base/context.h"
 
 namespace axial::depth {
+
+// Throws Stopped after a request to stop.
+inline void check_stop(const std::stop_token& stop) {
+  if (stop.stop_requested()) throw Stopped();
+}
 
 // The images of all pointers have the size of the plane map, and must outlive the sweep.
 struct SweepInput {
@@ -31,6 +39,7 @@ struct SweepInput {
   // True: the pixel's own plane and the planes of its neighbours are scored in up to kManyViews
   // views.
   bool many_views = false;
+  std::stop_token stop = {};  // a sweep throws Stopped within a row of pixels after a request
 };
 
 }  // namespace axial::depth

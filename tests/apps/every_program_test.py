@@ -133,6 +133,17 @@ class CommandLine(Programs):
         return [command[0], *(values.get(before, word) for before, word in zip(command, command[1:]))]
 
 
+class WrongClouds(Programs):
+    def test_damaged_clouds_are_named(self):
+        whole = read(self.cloud)
+        for content in (b"", b"ply\n", whole[:len(whole) // 2], whole[:-1]):
+            write(self.cloud, content)
+            for tiles in ((), ("--tiles", 2)):
+                command = self.program("ReconstructMesh", "-o", "out", *tiles, mesh=None)
+                with self.subTest(size=len(content), tiles=tiles):
+                    self.refuses_and_keeps("scene.ply", *command)
+
+
 class WrongMeshes(Programs):
     """Programs that take a mesh name the file and its fault."""
     PROGRAMS = ("TextureMesh", "MapSurface", "RefineMesh", "CompareSurveys")

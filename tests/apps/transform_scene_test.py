@@ -271,6 +271,13 @@ class Ports(Aligned):
         self.transform("-t", self.path("t.txt"))
         self.assertEqual(self.moved_port()["distance_m"], 0.02)
 
+    def test_a_water_surface_moves(self):
+        self.port({"type": "water-surface", "normal": [0, 0, 1], "point_m": [0.5, 0, 0.25], "n_air": 1.0,
+                   "n_water": 1.333})
+        self.transform("-t", self.path("t.txt"))
+        self.near(self.moved_port()["normal"], times(TURN, (0, 0, 1)), 1e-12)
+        self.near(self.moved_port()["point_m"], moved((0.5, 0, 0.25), 2.5), 1e-12)
+
     def test_rigid_alignment(self):
         self.port(flat())
         self.not_aligned("the scale 1.01", self.positions(1.01))
@@ -299,6 +306,12 @@ class Volume(Transform):
         self.assertAlmostEqual(self.measured(said, "Volume above the ground plane") / 2.5 ** 3, 1, 3)
         self.refused("mesh.ply: it is not closed (8 border edges", "-m", "mesh.ply",
                      "--compute-volume", 1, "--plane-threshold", -1)
+
+    def test_a_closed_mesh(self):
+        self.put(CUBE, CUBE_FACES)
+        said = self.transform("-t", self.path("t.txt"), "-m", "mesh.ply", "--compute-volume", 1,
+                              "--plane-threshold", -1).stdout
+        self.assertAlmostEqual(self.measured(said, "Volume that the mesh encloses"), 2.5 ** 3, 4)
 
 
 if __name__ == "__main__":

@@ -145,6 +145,9 @@ class Densify(TinyScene):
             ("99", tiny_scene.mvs(self.images, version=99)), ("scene.mvs", tiny_scene.mvs(self.images, pose=3)),
             ("", tiny_scene.mvs(self.images[:1], centres=[(0, 0, 0)], points=[])))
 
+    def test_a_folder_that_cannot_be_written(self):
+        self.refuses("/proc", *DENSIFY, "-i", self.scene, "-w", "/proc")
+
     def test_too_little_memory(self):
         for least in ("1", "30"):
             said = self.refuses_scene(f"--max-memory {least}: ", "--max-memory", least)

@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "base/context.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "depth/matching_survey.h"
@@ -47,6 +48,21 @@ TEST_P(PatchMatchOn, FindsTheSurface) {
   EXPECT_LT(errors.median_relative, 0.005);
   EXPECT_GT(errors.valid_fraction, 0.85);
   EXPECT_EQ(map.ids, (std::vector<std::uint32_t>{10, 11, 12, 13}));
+}
+
+TEST(PatchMatch, StopsWithinARowOfPixels) {
+  const Survey survey = make_survey(Kind::flat_port);
+  std::vector<const MatchImage*> sources;
+  MatchInput input = survey.input(0, sources);
+  const DepthMap map = estimate_depth_map(input, {});
+  std::stop_source stop;
+  std::uint64_t scores = 0;
+  input.stop = stop.get_token();
+  input.scores = &scores;
+  stop.request_stop();
+  EXPECT_THROW(estimate_depth_map(input, {}), Stopped);
+  EXPECT_THROW(refine_depth_map(input, map, {}, 0, true, {}), Stopped);
+  EXPECT_EQ(scores, 0u);
 }
 
 // Pixels whose window lies partly outside the image must be found as well as pixels farther inside.
