@@ -70,12 +70,19 @@ double mean_median(std::vector<T> values) {
 // from their median.
 inline constexpr double kSigmasOfMedian = 1.4826;
 
+// The robust standard deviation about zero: kSigmasOfMedian times the upper_median() of the
+// absolute values. 0 if there are no values.
+inline double deviation_about_zero(std::vector<double> values) {
+  for (double& value : values) value = std::abs(value);
+  return kSigmasOfMedian * upper_median(std::move(values));
+}
+
 // The robust standard deviation: kSigmasOfMedian times the upper_median() of the distances of the
 // values from their upper_median(). 0 if there are no values.
 inline double robust_deviation(std::vector<double> values) {
   const double median = upper_median(values);
-  for (double& value : values) value = std::abs(value - median);
-  return kSigmasOfMedian * upper_median(std::move(values));
+  for (double& value : values) value -= median;
+  return deviation_about_zero(std::move(values));
 }
 
 }  // namespace axial

@@ -132,7 +132,7 @@ CellMedian median_of_cell(std::vector<double>& values) {
   const auto count = static_cast<double>(values.size());
   const double middle = upper_median(values);
   for (double& value : values) value = std::abs(value - middle);
-  return {std::abs(middle), 1.2533 * 1.4826 * upper_median(values) / std::sqrt(count)};
+  return {std::abs(middle), 1.2533 * kSigmasOfMedian * upper_median(values) / std::sqrt(count)};
 }
 
 void add_cells(const MapAgreement& map, std::vector<double>& sizes, std::vector<double>& ratios) {

@@ -5,6 +5,8 @@
 #include <map>
 #include <numeric>
 
+#include "base/order_statistics.h"
+
 namespace axial::diagnosis {
 namespace {
 
@@ -29,7 +31,7 @@ Usable usable_observations(const TrackedPhotographs& photographs,
     if (freed[i].allFinite())
       values[camera_of(i)].insert(values[camera_of(i)].end(), {freed[i].x(), freed[i].y()});
   std::vector<double> limits;
-  for (auto& list : values) limits.push_back(kOutlierLimit * robust_deviation(std::move(list)));
+  for (auto& list : values) limits.push_back(kOutlierLimit * deviation_about_zero(std::move(list)));
   Usable usable{Lists(photographs.images.size()), Lists(photographs.points.size())};
   for (std::size_t i = 0; i < freed.size(); ++i) {
     if (!freed[i].allFinite() || freed[i].cwiseAbs().maxCoeff() > limits[camera_of(i)]) continue;

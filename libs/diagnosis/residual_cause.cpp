@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/order_statistics.h"
 #include "base/parallel.h"
 #include "diagnosis/cause_sample.h"
 #include "diagnosis/free_directions.h"
@@ -119,7 +120,7 @@ double systematic_square(const TrackedPhotographs& sample, const Eigen::VectorXd
 }
 
 double noise_of(const Eigen::VectorXd& errors) {
-  return robust_deviation({errors.data(), errors.data() + errors.size()});
+  return deviation_about_zero({errors.data(), errors.data() + errors.size()});
 }
 
 // Sets the changes of the trial and the share that they explain.

@@ -28,7 +28,7 @@ double clip(Errors& errors, int axis) {
   for (const Eigen::Vector2d& error : errors) values.push_back(error[axis]);
   const double median = upper_median(values);
   for (double& value : values) value -= median;
-  const double deviation = robust_deviation(std::move(values));
+  const double deviation = deviation_about_zero(std::move(values));
   for (Eigen::Vector2d& error : errors)
     error[axis] = std::clamp(error[axis], median - kClip * deviation, median + kClip * deviation);
   return deviation;

@@ -24,7 +24,7 @@ double deviation_of(std::span<const ObservationTerm> terms, const Eigen::Vector<
     const Eigen::Vector2d error = term.error - term.by_pose * step;
     values.insert(values.end(), {error.x(), error.y()});
   }
-  return robust_deviation(std::move(values));
+  return deviation_about_zero(std::move(values));
 }
 
 // The change of the pose that fits the terms best.
@@ -48,12 +48,6 @@ Eigen::Vector<double, 6> pose_step(std::span<const ObservationTerm> terms) {
 }
 
 }  // namespace
-
-double robust_deviation(std::vector<double> values) {
-  if (values.empty()) return 0;
-  for (double& value : values) value = std::abs(value);
-  return 1.4826 * upper_median(std::move(values));
-}
 
 ObservationTerm observation_term(const AnyCamera<double>& camera, const Pose& pose,
                                  const Eigen::Vector3d& point, const Eigen::Vector2d& pixel) {

@@ -52,8 +52,4 @@ inline constexpr std::size_t kLeastObservations = 10;
 
 ResidualVectors residual_vectors(const TrackedPhotographs& photographs);
 
-// 1.4826 times the median of the absolute `values`: the standard deviation of normal errors with
-// mean 0. 0 without values.
-double robust_deviation(std::vector<double> values);
-
 }  // namespace axial::diagnosis

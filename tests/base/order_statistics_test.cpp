@@ -38,6 +38,11 @@ TEST(OrderStatistics, OutliersDoNotMatterForTheRobustDeviation) {
   EXPECT_DOUBLE_EQ(robust_deviation({1, 2, 3, 4, 1000}), kSigmasOfMedian);
 }
 
+TEST(OrderStatistics, TheDeviationAboutZeroKeepsTheMean) {
+  EXPECT_DOUBLE_EQ(deviation_about_zero({3, -2, 3, 4, -1000}), 3 * kSigmasOfMedian);
+  EXPECT_EQ(deviation_about_zero({}), 0);
+}
+
 TEST(OrderStatistics, OfAnEvenNumberAreOneOfTheTwoInTheMiddle) {
   EXPECT_EQ(upper_median(std::vector{4.0, 1.0, 3.0, 2.0}), 3);
   EXPECT_EQ(lower_quantile(std::vector{4.0, 1.0, 3.0, 2.0}, 0.5), 2);
