@@ -4,7 +4,7 @@
 # is an error.
 #     bash tests/tidy.sh             # about half an hour
 #     bash tests/tidy.sh libs/pose/  # only compiled files whose path matches
-# The build's own options are for gcc: clang cannot read its precompiled headers and warns of options that it ignores.
+# Precompiled headers are left out, because clang-tidy may be of another version than the compiler.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 cmake --preset release -B build/tidy -DAXIAL_TESTS=OFF -DCMAKE_EXPORT_COMPILE_COMMANDS=ON \

@@ -107,11 +107,11 @@ struct State {
 using Checkpoint = std::function<void(const State& state)>;
 
 // Refines `state.mesh`. First, large faces are split (Options::max_face_area). A vertex that
-// splitting adds has the mean colour of the two ends of its edge. Second, folds are flattened
-//. Third, Gauss-Newton steps move the vertices. The steps do not
-// move vertices that no pair measures, unless measured vertices are near: there, the smoothness
-// term moves them with the surface. Faces of the result may intersect each other. The result does
-// not depend on the number of threads.
+// splitting adds has the mean colour of the two ends of its edge. Second, folds are flattened.
+// Third, Gauss-Newton steps move the vertices. The steps do not move vertices that no pair
+// measures, unless measured vertices are near: there, the smoothness term moves them with the
+// surface. Faces of the result may intersect each other. The result does not depend on the number
+// of threads.
 //
 // `state`: a mesh alone, or a state that `checkpoint` received in a call with the same views,
 // pictures and options. From such a state, the refinement goes on to the same result.
