@@ -64,11 +64,13 @@ class LongFields(TinyScene):
 class LittleMemory(Wall):
     def test_is_one_line(self):
         """From too little memory for loading the libraries up to enough memory."""
-        few, many = (*range(190, 230, 2), *range(230, 430, 20)), (*range(240, 330, 6), 3000)
+        few, many = (*range(50, 112, 2), *range(120, 430, 60), 430), (*range(240, 330, 6), 3000)
         for steps, reason, *command in (
                 (few, "out of memory|thread|pthread", *self.densify("-v", "0")),
                 (few, "out of memory|thread|pthread", "InterfaceCOLMAP", "-i", self.path("colmap"), "-o",
                  self.path("a.mvs"), "-v", "0"),
+                # Pictures need the image codecs, which are loaded late.
+                (range(100, 440, 20), "imgcodecs.* cannot be loaded: |out of memory|thread", *self.densify("-v", "3")),
                 (many, "^((?!TIFF|GDAL|VSI|CPL|Embree|bad_alloc).)*$", *self.command("MapSurface", "--max-threads",
                                                                                       1))):
             ends = []
