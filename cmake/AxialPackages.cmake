@@ -37,7 +37,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # The scripts run python3 and colmap. The programs load the image codecs of OpenCV when they first need them
 # (libs/io/images/opencv_codecs.cpp). Debian's package has the name of the library: libopencv-imgcodecs406.
 get_target_property(codecs opencv_imgcodecs IMPORTED_SONAME_RELEASE)
-string(REGEX REPLACE "^(.+)_(.+)[.]so[.](.+)$" "\\1-\\2\\3" codecs ${codecs})
+string(REGEX REPLACE "^(.+)_(.+)[.]so[.](.+)$" "\\1-\\2\\3" codecs "${codecs}")
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3, colmap, ${codecs}")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "snakemake, slurm-client")  # for axial-reconstruct --cluster
 if(AXIAL_PYTHON)

@@ -50,7 +50,7 @@ def programs_of(prefix):
 
 def loaded_by(program):
     """The libraries that the loader of this system gives the program, without glibc: {name: path}. Libraries that the
-    program loads later are among them, because they are loaded before the program starts."""
+    program loads later are among them: LD_PRELOAD makes the loader find them, too."""
     later = sorted({name.decode() for name in LOADED_LATER.findall(program.read_bytes())})
     preload = f"LD_PRELOAD={' '.join(later)}"
     libraries = {}

@@ -33,7 +33,8 @@ struct MatchInput {
   // If not null, this number is increased by the number of computed scores. A score is for one
   // plane in one view.
   std::uint64_t* scores = nullptr;
-  // After a request to stop, both functions throw Stopped, while they match within a row of pixels.
+  // After a request to stop, estimate_depth_map() and refine_depth_map() throw Stopped. Matching
+  // notices the request within a row of pixels.
   std::stop_token stop = {};
 };
 

@@ -125,7 +125,7 @@ def measure_pinhole(data, out, folder):
     measured(folder / "convert.log", "colmap", "model_converter", "--input_path", out / "colmap" / "best",
              "--output_path", model, "--output_type", "TXT")
     brought.lens = model / "cameras.txt"
-    change_port(brought, n_water=1.0, n_glass=1.0)  # air on both sides of nothing: RefinePoses wants a port
+    change_port(brought, n_water=1.0, n_glass=1.0)  # bends no ray; RefinePoses refuses a survey without a port
     (folder / "bars.csv").write_text(bars_of(random.Random("right"), 0))
     report, model = refined(brought, out, folder, "--bars", folder / "bars.csv")
     return scale_of(model, data / "sparse") - 1, error_of_check(report)

@@ -13,9 +13,9 @@
 
 namespace axial::io {
 
-// As cv::imdecode() and cv::imencode(). decode() returns an empty image for bytes that cannot be
-// decoded, encode() returns no bytes for an image that cannot be encoded. Both also throw
-// cv::Exception. Error if the library is not installed.
+// As cv::imdecode() and cv::imencode(). The image is empty if the bytes cannot be decoded, and
+// there are no bytes if the image cannot be encoded. Both functions also throw cv::Exception. Error
+// if the library is not installed or cannot be loaded.
 cv::Mat decode_by_opencv(std::string_view bytes, int flags);
 std::vector<unsigned char> encode_by_opencv(const std::string& extension, const cv::Mat& image,
                                             const std::vector<int>& parameters);
