@@ -11,7 +11,7 @@
 #include "base/progress.h"
 #include "base/split.h"
 #include "io/bytes/json.h"
-#include "io/bytes/json_entry.h"
+#include "io/bytes/json_place.h"
 #include "io/images/image.h"
 #include "write_scene.h"
 
@@ -37,25 +37,25 @@ simulate::PlainWater plain_water(const std::string& text) {
   return {a, b, veil};
 }
 
+simulate::Lamp lamp_of(const io::JsonPlace& place) {
+  place.require_object({"place", "direction", "half_angle_degrees", "power"});
+  simulate::Lamp lamp{place.at("place").vector(), place.at("direction").vector()};
+  if (!(lamp.direction.norm() > 0)) place.at("direction").refuse("a direction");
+  lamp.direction.normalize();
+  lamp.half_angle = simulate::kRadians * place.number_or("half_angle_degrees", 40);
+  lamp.power = place.number_or("power", 1);
+  if (!(lamp.half_angle > 0 && lamp.half_angle < 170 * simulate::kRadians))
+    place.at("half_angle_degrees").refuse("a number between 0 and 170");
+  if (!(lamp.power > 0)) place.at("power").refuse("a number above 0");
+  return lamp;
+}
+
 std::vector<simulate::Lamp> read_lamps(const std::filesystem::path& path) {
   const json file = io::read_json(path);
-  const std::string name = path.string();
+  const io::JsonPlace list = io::JsonPlace::of_file(file, path).at("lamps");
   std::vector<simulate::Lamp> lamps;
-  io::for_each_entry(file, name, "lamps", [&](const io::Entry& entry) {
-    entry.require_known({"place", "direction", "half_angle_degrees", "power"});
-    const std::vector<double> place = entry.numbers("place", 3, "three numbers [m]");
-    const std::vector<double> axis = entry.numbers("direction", 3, "three numbers");
-    simulate::Lamp lamp{{place[0], place[1], place[2]}, {axis[0], axis[1], axis[2]}};
-    if (!(lamp.direction.norm() > 0)) entry.refuse("direction", "a direction");
-    lamp.direction.normalize();
-    lamp.half_angle = simulate::kRadians * entry.number_or("half_angle_degrees", 40);
-    lamp.power = entry.number_or("power", 1);
-    if (!(lamp.half_angle > 0 && lamp.half_angle < 170 * simulate::kRadians))
-      entry.refuse("half_angle_degrees", "between 0 and 170");
-    if (!(lamp.power > 0)) entry.refuse("power", "above 0");
-    lamps.push_back(lamp);
-  });
-  if (lamps.empty()) fail_in(name, "lamps must be a list of at least one lamp");
+  for (const io::JsonPlace& place : list.elements()) lamps.push_back(lamp_of(place));
+  if (lamps.empty()) list.refuse("a list of at least one lamp");
   return lamps;
 }
 

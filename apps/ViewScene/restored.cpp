@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "base/parallel.h"
+#include "io/bytes/json.h"
+#include "io/bytes/json_place.h"
 #include "io/images/image.h"
-#include "json_fields.h"
 #include "scene/resolution.h"
 #include "survey/colors.h"
 
@@ -26,46 +29,42 @@ constexpr int kComparedQuality = 88;  // of JPEG files
 constexpr std::size_t kMostCharts = 1000;
 constexpr std::size_t kMostWays = 1000;  // points of the chart
 
-bool flag_of(const JsonField& field) {
-  if (!field.value.is_boolean()) field.refuse("true or false");
-  return field.value.get<bool>();
-}
-
-std::string choice_of(const JsonField& field, std::initializer_list<const char*> choices,
+std::string choice_of(const io::JsonPlace& field, std::initializer_list<const char*> choices,
                       const std::string& wanted) {
   const std::string text = field.text();
   if (std::ranges::find(choices, text) == choices.end()) field.refuse(wanted);
   return text;
 }
 
-Json estimate_of(const JsonField& channel, const char* key, const char* name, const char* unit) {
-  const JsonField estimate = channel.at(key);
+Json estimate_of(const io::JsonPlace& channel, const char* key, const char* name,
+                 const char* unit) {
+  const io::JsonPlace estimate = channel.at(key);
   return {{"name", name},
           {"unit", unit},
-          {"value", estimate.at("value").number()},
+          {"value", estimate.number("value")},
           {"sigma", estimate.at("sigma").number_from_0()}};
 }
 
-Json values_of(const JsonField& channel, bool by_sun) {
+Json values_of(const io::JsonPlace& channel, bool by_sun) {
   if (!by_sun)
     return Json::array({{{"name", "loss"},
                          {"unit", "/m"},
-                         {"value", channel.at("loss_per_m").number()},
+                         {"value", channel.number("loss_per_m")},
                          {"sigma", Json()}}});
   Json values = Json::array({estimate_of(channel, "a_per_m", "loss a", "/m"),
                              estimate_of(channel, "b_per_m", "rate of the veil b", "/m"),
                              estimate_of(channel, "veil", "veil B", "")});
-  if (channel.value.contains("daylight_per_m"))
+  if (channel.has("daylight_per_m"))
     values.push_back(estimate_of(channel, "daylight_per_m", "loss of daylight by depth", "/m"));
   return values;
 }
 
-Json channels_of(const JsonField& channels, bool by_sun) {
+Json channels_of(const io::JsonPlace& channels, bool by_sun) {
   Json list = Json::array();
   for (const char* name : {"red", "green", "blue"}) {
-    const JsonField channel = channels.at(name);
-    const bool is_determined = flag_of(channel.at("determined"));
-    const bool is_assumed = channel.value.contains("assumed") && flag_of(channel.at("assumed"));
+    const io::JsonPlace channel = channels.at(name);
+    const bool is_determined = channel.flag("determined");
+    const bool is_assumed = channel.flag_or_false("assumed");
     const bool has_values = is_determined || is_assumed;
     list.push_back({{"name", name},
                     {"determined", is_determined},
@@ -75,50 +74,42 @@ Json channels_of(const JsonField& channels, bool by_sun) {
   return list;
 }
 
-Json three_of(const JsonField& field) {
-  const std::vector<JsonField> elements = field.elements();
-  if (elements.size() != 3) field.refuse("three numbers");
-  Json numbers = Json::array();
-  for (const JsonField& element : elements) numbers.push_back(element.number());
-  return numbers;
-}
-
 // Error if there are more than `most` elements.
-std::vector<JsonField> few_elements(const JsonField& field, std::size_t most) {
-  std::vector<JsonField> elements = field.elements();
-  if (elements.size() > most) fail_in(field.file, "{} has more than {} elements", field.name, most);
+std::vector<io::JsonPlace> few_elements(const io::JsonPlace& field, std::size_t most) {
+  std::vector<io::JsonPlace> elements = field.elements();
+  if (elements.size() > most) fail("{} has more than {} elements", field.where, most);
   return elements;
 }
 
-Json ways_of(const JsonField& field) {
+Json ways_of(const io::JsonPlace& field) {
   Json list = Json::array();
-  for (const JsonField& row : few_elements(field, kMostWays))
+  for (const io::JsonPlace& row : few_elements(field, kMostWays))
     list.push_back({{"way_m", row.at("way_m").number_from_0()},
-                    {"before", three_of(row.at("before"))},
-                    {"after", three_of(row.at("after"))}});
+                    {"before", row.at("before").numbers(3)},
+                    {"after", row.at("after").numbers(3)}});
   return list;
 }
 
-Json charts_of(const JsonField& field) {
+Json charts_of(const io::JsonPlace& field) {
   Json list = Json::array();
-  for (const JsonField& chart : few_elements(field, kMostCharts))
-    list.push_back({{"photograph", chart.at("photograph").text()},
+  for (const io::JsonPlace& chart : few_elements(field, kMostCharts))
+    list.push_back({{"photograph", chart.text("photograph")},
                     {"ciede2000", chart.at("ciede2000").number_from_0()}});
   return list;
 }
 
 void add_findings(const fs::path& file, Json& data) {
-  const JsonField whole{file, "", io::read_json(file)};
+  const nlohmann::json content = io::read_json(file);
+  const io::JsonPlace whole = io::JsonPlace::of_file(content, file);
   data["light"] = choice_of(whole.at("light"), {"sun", "lamp"}, "sun or lamp");
   data["white"] = choice_of(whole.at("white"), {"grey patch", "grey seabed", "charts"},
                             "grey patch, grey seabed or charts");
-  if (whole.value.contains("charts")) data["charts"] = charts_of(whole.at("charts"));
+  if (whole.has("charts")) data["charts"] = charts_of(whole.at("charts"));
   for (const char* key : {"spread_before", "spread_after"})
     data[key] = whole.at(key).number_from_0();
-  if (whole.value.contains("water_type")) data["water"] = whole.at("water_type").text();
+  if (whole.has("water_type")) data["water"] = whole.text("water_type");
   data["channels"] = channels_of(whole.at("channels"), data["light"] == "sun");
-  if (whole.value.contains("brightness_by_way"))
-    data["by_way"] = ways_of(whole.at("brightness_by_way"));
+  if (whole.has("brightness_by_way")) data["by_way"] = ways_of(whole.at("brightness_by_way"));
 }
 
 void write_picture(const fs::path& file, const fs::path& from, int bits) {

@@ -2,10 +2,12 @@
 #include "run.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
-#include "json_fields.h"
+#include "io/bytes/json.h"
+#include "io/bytes/json_place.h"
 
 namespace axial::apps {
 namespace {
@@ -34,35 +36,34 @@ std::string without_folders(const std::string& text, std::string_view before,
   return result;
 }
 
-Json words_of(const JsonField& field) {
+Json words_of(const io::JsonPlace& field) {
   Json words = Json::array();
-  for (const JsonField& word : field.elements())
+  for (const io::JsonPlace& word : field.elements())
     words.push_back(without_folders(word.text(), "=:,", "=:,"));
   return words;
 }
 
-Json warnings_of(const JsonField& field) {
+Json warnings_of(const io::JsonPlace& field) {
   Json warnings = Json::array();
-  for (const JsonField& warning : field.elements())
-    warnings.push_back(
-        {{"text", without_folders(warning.at("text").text(), " =:,'\"(", " =:,;'\")")},
-         {"times", warning.at("times").number_from_0()}});
+  for (const io::JsonPlace& warning : field.elements())
+    warnings.push_back({{"text", without_folders(warning.text("text"), " =:,'\"(", " =:,;'\")")},
+                        {"times", warning.at("times").number_from_0()}});
   return warnings;
 }
 
 // Numbers, of which those that are not known are null.
-Json numbers_of(const JsonField& field) {
+Json numbers_of(const io::JsonPlace& field) {
   Json numbers = Json::array();
-  for (const JsonField& number : field.elements())
-    numbers.push_back(number.value.is_null() ? Json() : Json(number.number()));
+  for (const io::JsonPlace& number : field.elements())
+    numbers.push_back(number.json.is_null() ? Json() : Json(number.number()));
   return numbers;
 }
 
-Json control_of(const JsonField& field) {
+Json control_of(const io::JsonPlace& field) {
   Json rows = Json::array();
-  for (const JsonField& row : field.elements())
-    rows.push_back({{"name", row.at("name").text()},
-                    {"use", row.at("use").text()},
+  for (const io::JsonPlace& row : field.elements())
+    rows.push_back({{"name", row.text("name")},
+                    {"use", row.text("use")},
                     {"photographs", row.at("photographs").number_from_0()},
                     {"residual_mm", numbers_of(row.at("residual_mm"))},
                     {"expected_sigma_mm", numbers_of(row.at("expected_sigma_mm"))}});
@@ -72,17 +73,18 @@ Json control_of(const JsonField& field) {
 }  // namespace
 
 Json run_report(const std::filesystem::path& file) {
-  const JsonField whole{file, "", io::read_json(file)};
+  const nlohmann::json content = io::read_json(file);
+  const io::JsonPlace whole = io::JsonPlace::of_file(content, file);
   Json report{{"command", words_of(whole.at("command"))}, {"steps", Json::array()}};
-  for (const JsonField& step : whole.at("steps").elements()) {
-    const JsonField version = step.at("version");
-    report["steps"].push_back({{"name", step.at("name").text()},
+  for (const io::JsonPlace& step : whole.elements("steps")) {
+    const io::JsonPlace version = step.at("version");
+    report["steps"].push_back({{"name", step.text("name")},
                                {"command", words_of(step.at("command"))},
                                {"seconds", step.at("seconds").number_from_0()},
-                               {"version", version.value.is_null() ? Json() : Json(version.text())},
+                               {"version", version.json.is_null() ? Json() : Json(version.text())},
                                {"warnings", warnings_of(step.at("warnings"))}});
   }
-  if (whole.value.contains("control")) report["control"] = control_of(whole.at("control"));
+  if (whole.has("control")) report["control"] = control_of(whole.at("control"));
   return report;
 }
 

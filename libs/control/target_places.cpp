@@ -9,53 +9,42 @@
 #include "base/error.h"
 #include "control/labels.h"
 #include "io/bytes/json.h"
-#include "io/bytes/json_entry.h"
+#include "io/bytes/json_place.h"
 
 namespace axial::control {
 namespace {
 
+using io::JsonPlace;
 using nlohmann::json;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-const json& list_at(const json& content, const char* key, const std::string& name) {
-  const auto found = content.is_object() ? content.find(key) : content.end();
-  if (!content.is_object() || found == content.end() || !found->is_array())
-    fail_in(name, "{} must be a list", key);
-  return *found;
-}
-
-TargetPlace place_of(const io::Entry& entry) {
+TargetPlace place_of(const JsonPlace& entry) {
   TargetPlace place;
-  place.label = entry.text("label");
+  place.label = entry.name("label");
   place.world = {entry.number("x"), entry.number("y"), entry.number("z")};
-  const json* photographs = entry.find("photographs");
-  if (!photographs || !photographs->is_number_unsigned())
-    entry.refuse("photographs", "a number of photographs");
-  place.photographs = photographs->get<std::size_t>();
+  const JsonPlace photographs = entry.at("photographs");
+  if (!photographs.json.is_number_unsigned()) photographs.refuse("a number of photographs");
+  place.photographs = photographs.json.get<std::size_t>();
   return place;
 }
 
-double covariance_at(const json& value, const std::string& where) {
-  if (value.is_null()) return kInfinite;
-  if (!io::is_finite_number(value))
-    fail("{} is {}, but must be a finite number", where, io::to_text(value));
-  return value.get<double>();
+double covariance_at(const JsonPlace& place) {
+  return place.json.is_null() ? kInfinite : place.number();
 }
 
-Eigen::MatrixXd covariance_of(const json& rows, std::size_t targets, const std::string& name) {
-  const std::string where = name + ": covariance_m2";
+Eigen::MatrixXd covariance_of(const JsonPlace& place, std::size_t targets) {
+  const std::vector<JsonPlace> rows = place.elements();
   const std::size_t size = 3 * targets;
-  if (rows.size() != size)
-    fail("{} has {} rows, but must have {}: three for each target", where, rows.size(), size);
+  if (rows.size() != size) place.refuse(fmt::format("{} rows: three for each target", size));
   const auto count = static_cast<Eigen::Index>(size);
   Eigen::MatrixXd covariance(count, count);
   for (std::size_t i = 0; i < size; ++i) {
-    if (!rows[i].is_array() || rows[i].size() != size)
-      fail("{}[{}] must be a list of {} numbers", where, i, size);
+    const std::vector<JsonPlace> row = rows[i].elements();
+    if (row.size() != size) rows[i].refuse(fmt::format("{} numbers", size));
     for (std::size_t j = 0; j < size; ++j)
       covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-          covariance_at(rows[i][j], fmt::format("{}[{}][{}]", where, i, j));
+          covariance_at(row[j]);
   }
   return covariance;
 }
@@ -100,23 +89,19 @@ std::filesystem::path places_beside(const std::filesystem::path& mesh, const std
 TargetPlaces read_target_places(const std::filesystem::path& file) {
   const std::string name = file.string();
   const json content = io::read_json(file);
-  const json& list = list_at(content, "targets", name);
-  const json& rows = list_at(content, "covariance_m2", name);
+  const JsonPlace whole = JsonPlace::of_file(content, file);
   TargetPlaces places;
   std::map<std::string, std::string> known;
-  io::for_each_entry(content, name, "targets", [&](const io::Entry& entry) {
+  for (const JsonPlace& entry : whole.elements("targets")) {
     places.targets.push_back(place_of(entry));
     const std::string& label = places.targets.back().label;
     const auto [before, is_new] = known.emplace(label_key(label), label);
     if (!is_new)
       fail("{}.label is {}, but {} is in the list before", entry.where, label, before->second);
-  });
-  places.covariance = covariance_of(rows, list.size(), name);
-  check_covariance(places.covariance, name);
-  if (const auto crs = content.find("crs"); crs != content.end()) {
-    if (!crs->is_string()) fail_in(name, "crs is {}, but must be a text", io::to_text(*crs));
-    places.crs = crs->get<std::string>();
   }
+  places.covariance = covariance_of(whole.at("covariance_m2"), places.targets.size());
+  check_covariance(places.covariance, name);
+  if (whole.has("crs")) places.crs = whole.text("crs");
   return places;
 }
 

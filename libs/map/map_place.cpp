@@ -1,35 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "map/map_place.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "axial/map.h"
 #include "base/error.h"
-#include "io/bytes/json_entry.h"
+#include "io/bytes/json.h"
+#include "io/bytes/json_place.h"
 #include "map/up_direction.h"
 
 namespace axial::map {
 namespace {
 
 template <int kRows>
-Eigen::Matrix<double, kRows, kRows> matrix_in(const io::Entry& entry, const char* key) {
-  const nlohmann::json* rows = entry.find(key);
-  const auto expected = fmt::format("{0} rows of {0} numbers", kRows);
-  if (!rows || !rows->is_array() || rows->size() != kRows) entry.refuse(key, expected.c_str());
+Eigen::Matrix<double, kRows, kRows> matrix_at(const io::JsonPlace& place) {
+  const std::vector<io::JsonPlace> rows = place.elements();
+  if (rows.size() != kRows) place.refuse(fmt::format("{0} rows of {0} numbers", kRows));
   Eigen::Matrix<double, kRows, kRows> matrix;
   for (int k = 0; k < kRows; ++k) {
-    const nlohmann::json row{{key, (*rows)[static_cast<std::size_t>(k)]}};
-    const std::vector<double> numbers =
-        io::Entry{row, entry.where}.numbers(key, kRows, expected.c_str());
-    matrix.row(k) = Eigen::Map<const Eigen::RowVector<double, kRows>>(numbers.data());
+    const std::vector<double> row = rows[static_cast<std::size_t>(k)].numbers(kRows);
+    matrix.row(k) = Eigen::Map<const Eigen::RowVector<double, kRows>>(row.data());
   }
   return matrix;
 }
 
 // An object of a comparison, which to_json() of compare/write_changes.h writes.
-io::Entry entry_of(const nlohmann::json& whole, const char* key,
-                   const std::filesystem::path& file) {
+io::JsonPlace object_at(const nlohmann::json& whole, const char* key,
+                        const std::filesystem::path& file) {
   if (!whole.is_object() || !whole.contains(key) || !whole[key].is_object())
     fail_in(file, "{} is missing: is it a comparison of CompareSurveys?", key);
   return {whole[key], file.string() + ": " + key};
@@ -39,21 +40,20 @@ Eigen::Isometry3d motion_in(const nlohmann::json& whole, const std::filesystem::
   const bool is_null =
       whole.is_object() && whole.contains("registration") && whole["registration"].is_null();
   if (is_null) return Eigen::Isometry3d::Identity();  // --align none
-  const io::Entry registration = entry_of(whole, "registration", file);
+  const io::JsonPlace matrix = object_at(whole, "registration", file).at("matrix");
   Eigen::Isometry3d motion;
-  motion.matrix() = matrix_in<4>(registration, "matrix");
+  motion.matrix() = matrix_at<4>(matrix);
   if (!is_rotation(motion.linear()) || motion.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-    registration.refuse("matrix", "a rotation and a translation");
+    matrix.refuse("a rotation and a translation");
   return motion;
 }
 
 MapPlace place_of_later_survey(const std::filesystem::path& file) {
   const nlohmann::json whole = io::read_json(file);
-  const io::Entry map = entry_of(whole, "map", file);
-  WorldAxes axes{matrix_in<3>(map, "axes"),
-                 Eigen::Vector3d(map.numbers("offset", 3, "3 numbers").data())};
-  if (!is_rotation(axes.axes)) map.refuse("axes", "a rotation");
-  return {after(motion_in(whole, file), axes), map.has("crs") ? map.text("crs") : ""};
+  const io::JsonPlace map = object_at(whole, "map", file);
+  WorldAxes axes{matrix_at<3>(map.at("axes")), map.at("offset").vector()};
+  if (!is_rotation(axes.axes)) map.at("axes").refuse("a rotation");
+  return {after(motion_in(whole, file), axes), map.has_value("crs") ? map.name("crs") : ""};
 }
 
 }  // namespace

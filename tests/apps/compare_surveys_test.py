@@ -264,8 +264,8 @@ class Like(CompareTest):
         report = self.report()
         turned = [[2, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
         for told, changed in (
-                ("map.axes is null, but must be 3 rows of 3 numbers", {"map": {**report["map"], "axes": None}}),
-                ("map.axes is [[1,0,0],[0,1,0]], but must be 3 rows of 3 numbers",
+                ("map.axes is null, expected a list", {"map": {**report["map"], "axes": None}}),
+                ("map.axes is [[1,0,0],[0,1,0]], expected 3 rows of 3 numbers",
                  {"map": {**report["map"], "axes": [[1, 0, 0], [0, 1, 0]]}}),
                 ("registration.matrix is [[2,0,0,0]", {"registration": {"matrix": turned}}),
                 ("map is missing: is it a comparison of CompareSurveys?", {"map": 1})):

@@ -197,13 +197,13 @@ class Folder(SurveyCase):
         found = self.put_colors()
         lamp = {**found, "light": "lamp"}
         row = found["brightness_by_way"][0]
-        wrong = [("light 7: must be a text", {**found, "light": 7}),
-                 ('light "moon": must be sun or lamp', {**found, "light": "moon"}),
+        wrong = [("light is 7, expected a text", {**found, "light": 7}),
+                 ('light is "moon", expected sun or lamp', {**found, "light": "moon"}),
                  ("spread_after is missing", {k: v for k, v in found.items() if k != "spread_after"}),
                  ("channels.green.loss_per_m is missing", lamp),
-                 ('charts[0].ciede2000 "3": must be a number',
+                 ('charts[0].ciede2000 is "3", expected a number',
                   {**found, "charts": [{"photograph": "a.jpg", "ciede2000": "3"}]}),
-                 ("brightness_by_way[0].after [1]: must be three numbers",
+                 ("brightness_by_way[0].after is [1], expected 3 numbers",
                   {**found, "brightness_by_way": [{**row, "after": [1]}]})]
         self.refuses_contents(self.path("work", "restored", "colors.json"), self.view("--colors", "restored"),
                               ("colors.json: ", "{"),
@@ -218,13 +218,13 @@ class Folder(SurveyCase):
                                  self.at("map.ortho.tif"))),
                 ("survey.change.json", (": ", "{"),
                  (": came.volume is missing", json.dumps({**change, "came": {}})),
-                 (': regions[0].x "a": must be a number', json.dumps({**change, "regions": [region]}))),
+                 (': regions[0].x is "a", expected a number', json.dumps({**change, "regions": [region]}))),
                 ("run.json", (": malformed JSON: more than 1000 ", "[" * 10**6 + "]" * 10**6),
                  *((": " + expected, json.dumps(run)) for expected, run in (
-                     ("the content []: must be an object", []), ("steps is missing", {"command": []}),
-                     ("steps 7: must be a list", {**RUN, "steps": 7}),
-                     ("steps[0].seconds -1: must be at least 0", {**RUN, "steps": [step]}),
-                     ("command[0] 3: must be a text", {**RUN, "command": [3]}),
+                     ("is [], expected an object", []), ("steps is missing", {"command": []}),
+                     ("steps is 7, expected a list", {**RUN, "steps": 7}),
+                     ("steps[0].seconds is -1, expected a number of at least 0", {**RUN, "steps": [step]}),
+                     ("command[0] is 3, expected a text", {**RUN, "command": [3]}),
                      ("control[0].use is missing", {**RUN, "control": [{"name": "a"}]}))))):
             self.refuses_contents(self.path("work", name), self.survey(),
                                   *((name + expected, content) for expected, content in cases))

@@ -113,24 +113,25 @@ TEST_F(Coco, LeavesOutBitmapsBoxesAndUnseenPoints) {
 TEST_F(Coco, ErrorsNameTheEntry) {
   nlohmann::json json = valid();
   json["annotations"][0]["segmentation"][1] = {1, 2, 3, 4, 5};
-  EXPECT_THAT(error(json),
-              HasSubstr("labels.json: annotations[0].segmentation: must have lists x, y"));
+  EXPECT_THAT(
+      error(json),
+      HasSubstr("labels.json: annotations[0].segmentation[1] is [1,2,3,4,5], expected x, y"));
   json = valid();
   json["annotations"][1]["image_id"] = 9;
-  EXPECT_THAT(error(json),
-              HasSubstr("annotations[1].image_id is 9, but must be the id of an image"));
+  EXPECT_THAT(error(json), HasSubstr("annotations[1].image_id is 9, expected the id of an image"));
   json = valid();
   json["annotations"][1].erase("category_id");
   EXPECT_THAT(error(json), HasSubstr("annotations[1].category_id is missing"));
   json = valid();
   json["images"][1]["id"] = 1;
-  EXPECT_THAT(error(json), HasSubstr("images[1].id is 1, but must be an id that no entry before"));
+  EXPECT_THAT(error(json), HasSubstr("images[1].id is 1, expected an id that no entry before"));
   json = valid();
   json["images"][1]["width"] = 0;
   EXPECT_THAT(error(json), HasSubstr("images[1].width is 0"));
   json = valid();
   json["annotations"][2]["keypoints"] = {1e300, 2, 2};
-  EXPECT_THAT(error(json), HasSubstr("annotations[2].keypoints: must have numbers up to 1e6"));
+  EXPECT_THAT(error(json),
+              HasSubstr("annotations[2].keypoints is [1e+300,2,2], expected numbers up to 1e6"));
   json = valid();
   json.erase("categories");
   EXPECT_THAT(error(json), HasSubstr("labels.json: is no COCO file: it has no list 'categories'"));

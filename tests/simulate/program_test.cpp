@@ -109,7 +109,7 @@ TEST_F(SimulateUnderwater, PhotographsWithTheLightOfWater) {
   refuses("--haze contradicts --water", kSmall + "--water 3C --haze 0.5 -o b");
   write_atomically(folder_ / "dark.json",
                    R"({"lamps": [{"place": [0.2, 0], "direction": [0, 0, 1]}]})");
-  refuses("dark.json: lamps[0].place is [0.2,0], but must be three numbers [m]",
+  refuses("dark.json: lamps[0].place is [0.2,0], expected 3 numbers",
           kSmall + "--water 3C --light lamp:dark.json -o b");
 }
 

@@ -11,7 +11,7 @@
 #include "base/log.h"
 #include "base/output_name.h"
 #include "io/bytes/json.h"
-#include "private/cameras/port_json.h"
+#include "io/bytes/json_place.h"
 
 namespace axial::io {
 namespace fs = std::filesystem;
@@ -19,12 +19,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kKey = "geo_offset";
-
-Eigen::Vector3d offset_from(const JsonPlace& place) {
-  const Eigen::Vector3d offset = place.vector();
-  if (!offset.allFinite()) fail("{} contains a number that is not finite", place.where);
-  return offset;
-}
 
 // The spacing of floats at the largest coordinate of the scene's points.
 double float_step(const Scene& scene) {
@@ -60,7 +54,7 @@ std::optional<LocalFrame> read_geo_offset_beside(const fs::path& scene_path) {
   const JsonPlace root{json, file.string() + ": geo"};
   root.require_object({"version", kKey});
   root.require_version_1();
-  return LocalFrame{offset_from(root.at(kKey))};
+  return LocalFrame{root.at(kKey).vector()};
 }
 
 void write_geo_offset_beside(const fs::path& scene_path, const LocalFrame& frame) {

@@ -123,53 +123,6 @@ void check(const refractive::DomePort<double>& port, const std::string& where,
 
 }  // namespace
 
-bool JsonPlace::has(const char* key) const {
-  return json.contains(key);
-}
-
-void JsonPlace::require_object(std::initializer_list<const char*> known) const {
-  for (const std::string& key : keys())
-    if (std::ranges::find(known, key) == known.end()) fail_in(where, "unknown key '{}'", key);
-}
-
-JsonPlace JsonPlace::at(const std::string& key) const {
-  const auto found = json.find(key);
-  if (found == json.end()) fail_in(where, "key '{}' is missing", key);
-  return {*found, fmt::format("{}.{}", where, key)};
-}
-
-double JsonPlace::number(const char* key) const {
-  const JsonPlace value = at(key);
-  if (!value.json.is_number())
-    fail("{} is {}, expected a number", value.where, to_text(value.json));
-  return value.json.get<double>();
-}
-
-std::string JsonPlace::text(const char* key) const {
-  const JsonPlace value = at(key);
-  if (!value.json.is_string()) fail("{} is {}, expected a text", value.where, to_text(value.json));
-  return value.json.get<std::string>();
-}
-
-Eigen::Vector3d JsonPlace::vector() const {
-  if (!json.is_array() || json.size() != 3 ||
-      !std::ranges::all_of(json, [](const Json& number) { return number.is_number(); }))
-    fail("{} is {}, expected three numbers", where, to_text(json));
-  return {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()};
-}
-
-std::vector<std::string> JsonPlace::keys() const {
-  if (!json.is_object()) fail("{} is not an object in braces", where);
-  std::vector<std::string> keys;
-  for (const auto& item : json.items()) keys.push_back(item.key());
-  return keys;
-}
-
-void JsonPlace::require_version_1() const {
-  if (const Json& version = at("version").json; version != 1)
-    fail("{}.version is {}, expected 1", where, to_text(version));
-}
-
 Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where) {
   const double length = n.stableNorm();
   if (!(length > 1e-6 && std::isfinite(length)))
@@ -241,14 +194,10 @@ namespace {
 // Reads a list into the first elements of `numbers`.
 void read_list(const JsonPlace& place, const char* key, std::span<double> numbers) {
   if (!place.has(key)) return;
-  const nlohmann::json& list = place.json.at(key);
-  if (!list.is_array() || list.size() > numbers.size())
-    fail("{}.{} is {}, expected at most {} numbers", place.where, key, to_text(list),
-         numbers.size());
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    if (!list[i].is_number()) fail("{}.{}[{}] is not a number", place.where, key, i);
-    numbers[i] = list[i].get<double>();
-  }
+  const JsonPlace list = place.at(key);
+  if (!list.json.is_array() || list.json.size() > numbers.size())
+    list.refuse(fmt::format("at most {} numbers", numbers.size()));
+  std::ranges::copy(list.numbers(list.json.size()), numbers.begin());
 }
 
 double read_type(const JsonPlace& place) {

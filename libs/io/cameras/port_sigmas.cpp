@@ -15,32 +15,29 @@ using Json = nlohmann::json;
 constexpr double kLeast = 1e-12;
 constexpr double kLargestAngle = 90, kLargestLength = 1, kLargestIndex = 1;
 
-double sigma(const Json& value, const std::string& where, double largest) {
+double sigma(const JsonPlace& place, double largest) {
   const bool possible =
-      value.is_number() && value.get<double>() >= kLeast && value.get<double>() <= largest;
-  if (!possible)
-    fail("{} is {}, expected a standard deviation above 0 and at most {}", where, to_text(value),
-         largest);
-  return value.get<double>();
+      is_finite_number(place.json) && place.number() >= kLeast && place.number() <= largest;
+  if (!possible) place.refuse(fmt::format("a standard deviation above 0 and at most {}", largest));
+  return place.number();
 }
 
 std::optional<double> number(const JsonPlace& place, const char* key, double largest) {
   if (!place.has(key)) return {};
-  const JsonPlace value = place.at(key);
-  return sigma(value.json, value.where, largest);
+  return sigma(place.at(key), largest);
 }
 
 template <int Size>
 std::optional<Eigen::Vector<double, Size>> list(const JsonPlace& place, const char* key,
                                                 double largest) {
   if (!place.has(key)) return {};
-  const auto& [json, where] = place.at(key);
-  if (!json.is_array()) return Eigen::Vector<double, Size>::Constant(sigma(json, where, largest));
-  if (json.size() != Size)
-    fail("{} is {}, expected a number or {} numbers", where, to_text(json), Size);
+  const JsonPlace value = place.at(key);
+  if (!value.json.is_array()) return Eigen::Vector<double, Size>::Constant(sigma(value, largest));
+  const std::vector<JsonPlace> list = value.elements();
+  if (list.size() != Size) value.refuse(fmt::format("a number or {} numbers", Size));
   Eigen::Vector<double, Size> sigmas;
-  for (int k = 0; k < Size; ++k)
-    sigmas(k) = sigma(json[static_cast<std::size_t>(k)], fmt::format("{}[{}]", where, k), largest);
+  for (std::size_t k = 0; k < Size; ++k)
+    sigmas(static_cast<Eigen::Index>(k)) = sigma(list[k], largest);
   return sigmas;
 }
 

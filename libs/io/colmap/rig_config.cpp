@@ -4,31 +4,22 @@
 #include <set>
 
 #include "base/error.h"
-#include "private/cameras/port_json.h"
+#include "io/bytes/json.h"
+#include "io/bytes/json_place.h"
 #include "private/colmap/colmap_parts.h"
 #include "private/colmap/rig_parts.h"
 
 namespace axial::io {
 namespace {
 
-std::vector<double> list_of(const JsonPlace& place, std::size_t count) {
-  const auto is_number = [](const nlohmann::json& value) { return value.is_number(); };
-  if (!place.json.is_array() || place.json.size() != count ||
-      !std::ranges::all_of(place.json, is_number))
-    fail("{} is {}, expected {} numbers", place.where, to_text(place.json), count);
-  return place.json.get<std::vector<double>>();
-}
-
 // The pose of a camera in the frame of its rig; empty if it is not stated.
 std::optional<Pose> pose_of(const JsonPlace& camera) {
   constexpr const char *kRotation = "cam_from_rig_rotation",
                        *kTranslation = "cam_from_rig_translation";
   if (!camera.has(kRotation) && !camera.has(kTranslation)) return {};
-  const std::vector<double> rotation = list_of(camera.at(kRotation), 4);
-  const std::vector<double> translation = list_of(camera.at(kTranslation), 3);
   ColmapPose values{};
-  std::ranges::copy(rotation, values.begin());
-  std::ranges::copy(translation, values.begin() + 4);
+  std::ranges::copy(camera.at(kRotation).numbers(4), values.begin());
+  std::ranges::copy(camera.at(kTranslation).numbers(3), values.begin() + 4);
   return pose_from_colmap(values, camera.where);
 }
 
@@ -40,21 +31,13 @@ double sigma_of(const JsonPlace& camera, const char* key, double largest) {
   return sigma;
 }
 
-bool is_reference(const JsonPlace& camera) {
-  if (!camera.has("ref_sensor")) return false;
-  const JsonPlace value = camera.at("ref_sensor");
-  if (!value.json.is_boolean())
-    fail("{} is {}, expected true or false", value.where, to_text(value.json));
-  return value.json.get<bool>();
-}
-
 RigCamera camera_of(const JsonPlace& place) {
   place.require_object({"image_prefix", "ref_sensor", "cam_from_rig_rotation",
                         "cam_from_rig_translation", "sigma_translation", "sigma_rotation",
                         "camera_model_name", "camera_params"});
   RigCamera camera;
   camera.prefix = place.text("image_prefix");
-  camera.is_reference = is_reference(place);
+  camera.is_reference = place.has("ref_sensor") && place.flag("ref_sensor");
   camera.pose = pose_of(place);
   if (camera.is_reference && camera.pose)
     fail_in(place.where, "states a pose of the reference camera, which is the frame of the rig");

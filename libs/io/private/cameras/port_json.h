@@ -3,11 +3,10 @@
 // lenses in JSON. Housing files, lens files and the side files of depth maps contain them.
 #pragma once
 
-#include <initializer_list>
 #include <string>
-#include <vector>
 
 #include "io/bytes/json.h"
+#include "io/bytes/json_place.h"
 #include "io/cameras/port_sigmas.h"
 #include "private/only_for_io.h"
 #include "refractive/lens_distortion.h"
@@ -15,22 +14,6 @@
 #include "scene/water_surface.h"
 
 namespace axial::io {
-
-// A value in a JSON file, with its location for error messages: `where` is "file: key.key".
-struct JsonPlace {
-  const nlohmann::json& json;
-  std::string where;
-
-  // Error unless the value is an object whose keys are all among `known`.
-  void require_object(std::initializer_list<const char*> known) const;
-  bool has(const char* key) const;
-  JsonPlace at(const std::string& key) const;  // Error if the key is missing
-  double number(const char* key) const;        // Error unless a finite number
-  std::string text(const char* key) const;
-  Eigen::Vector3d vector() const;         // Error unless a list of three numbers
-  std::vector<std::string> keys() const;  // Error unless an object
-  void require_version_1() const;         // Error unless the key "version" is 1
-};
 
 // The largest distance of a housing's flat port from the camera [m]. A larger value is probably in
 // a wrong unit.
