@@ -7,6 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "pose/uncertainty.h"
+
 namespace axial::apps {
 namespace {
 

@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "diagnosis/words.h"
 #include "pose/known.h"
+#include "pose/uncertainty.h"
 #include "stages.h"
 
 namespace axial::apps {

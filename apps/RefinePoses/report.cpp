@@ -10,6 +10,7 @@
 
 #include "io/bytes/json.h"
 #include "pose/free_numbers.h"
+#include "pose/uncertainty.h"
 #include "rigs.h"
 
 namespace axial::apps {

@@ -9,6 +9,7 @@
 #include "control_report.h"
 #include "left_out.h"
 #include "pose/refine.h"
+#include "pose/uncertainty.h"
 
 namespace axial::apps {
 

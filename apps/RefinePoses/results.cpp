@@ -8,6 +8,7 @@
 #include "control/target_places.h"
 #include "io/cameras/geo_offset.h"
 #include "pose/depth_sigma.h"
+#include "pose/uncertainty.h"
 #include "stages.h"
 
 namespace axial::apps {

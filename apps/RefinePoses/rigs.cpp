@@ -13,6 +13,8 @@
 #include "base/error.h"
 #include "io/cameras/photograph_times.h"
 #include "io/colmap/rigs.h"
+#include "pose/rig_fit.h"
+#include "pose/uncertainty.h"
 
 namespace axial::apps {
 namespace {

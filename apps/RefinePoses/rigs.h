@@ -9,8 +9,9 @@
 
 #include "base/option_list.h"
 #include "io/colmap/colmap.h"
-#include "pose/adjust.h"
+#include "pose/adjust_options.h"
 #include "pose/rig_frames.h"
+#include "pose/uncertainty.h"
 
 namespace axial::apps {
 

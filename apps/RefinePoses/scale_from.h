@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/unused_input.h"
-#include "pose/adjust.h"
+#include "pose/adjust_options.h"
 
 namespace axial::apps {
 

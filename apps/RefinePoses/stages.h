@@ -15,6 +15,7 @@
 #include "pose/colmap_bundle.h"
 #include "pose/housing_numbers.h"
 #include "pose/refine.h"
+#include "pose/uncertainty.h"
 #include "report.h"
 #include "scene/local_frame.h"
 

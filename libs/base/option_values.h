@@ -6,7 +6,8 @@
 #include <span>
 #include <string>
 
-#include "base/program.h"
+#include "base/option_list.h"
+#include "base/parsed_options.h"
 
 namespace axial {
 

@@ -50,6 +50,15 @@ void refuse_other_format(const fs::path& path, const std::string& option) {
     fail("{} {}: {} files are not written", option, path.string(), extension);
 }
 
+fs::path output_in_working_folder(const CommonOptions& common, const std::string& path,
+                                  const std::string& option) {
+  const fs::path file = in_working_folder(common, path);
+  refuse_control_characters(path, option);
+  if (!file.empty() && !file.has_filename())
+    fail("{} {}: must be the name of a file, not of a folder", option, path);
+  return file;
+}
+
 fs::path output_or(const fs::path& given, const fs::path& otherwise, const std::string& option) {
   if (!given.empty()) return given;
   refuse_control_characters(otherwise, option);

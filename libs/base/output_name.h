@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/program.h"
+#include "base/parsed_options.h"
 
 namespace axial {
 
@@ -34,6 +34,11 @@ void refuse_control_characters(const std::filesystem::path& path, const std::str
 // not write (.stl and others), or that only TransformScene writes (.las): the user expects this
 // format. `option`: as above.
 void refuse_other_format(const std::filesystem::path& path, const std::string& option);
+
+// Returns in_working_folder() for a file to write, the value of `option` ("--output-file"). Throws
+// an Error that names both if `path` ends in a slash, "." or "..", and so has no name for the file.
+std::filesystem::path output_in_working_folder(const CommonOptions& common, const std::string& path,
+                                               const std::string& option);
 
 // Returns `given`, the path of an output that parse_options() took from the value of `option`, or
 // `otherwise` if `given` is empty. Throws an Error if `otherwise` contains control characters.

@@ -332,24 +332,6 @@ Context program_context(const ParsedOptions& parsed) {
   return Context(console_events(), {}, {parsed.memory, parsed.common.max_threads});
 }
 
-bool given(const ParsedOptions& parsed, const std::string& name) {
-  return parsed.given.contains(name);
-}
-
-fs::path in_working_folder(const CommonOptions& common, const std::string& path) {
-  if (path.empty()) return {};
-  return (common.working_folder / path).lexically_normal();
-}
-
-fs::path output_in_working_folder(const CommonOptions& common, const std::string& path,
-                                  const std::string& option) {
-  const fs::path file = in_working_folder(common, path);
-  refuse_control_characters(path, option);
-  if (!file.empty() && !file.has_filename())
-    fail("{} {}: must be the name of a file, not of a folder", option, path);
-  return file;
-}
-
 ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOptions& program) {
   ParsedOptions parsed;
   KnownOptions known(parsed.common, program);

@@ -3,30 +3,14 @@
 // log, the exit code.
 #pragma once
 
-#include <filesystem>
 #include <functional>
-#include <set>
 #include <string>
 
 #include "base/context.h"
 #include "base/option_list.h"
+#include "base/parsed_options.h"
 
 namespace axial {
-
-// Values of the options that are common to all programs. parse_options() fills them, and applies
-// `log_file`, `process_priority` and `verbosity`. The program itself must apply `max_threads`
-// (program_context(), or ThreadLimit in base/parallel.h).
-struct CommonOptions {
-  std::filesystem::path working_folder;  // absolute; relative paths start here
-  std::string config_file;    // as the user gave it; a relative path starts at `working_folder`
-  std::string log_file;       // as the user gave it; empty: no log file
-  int archive_type = -1;      // the scene format; always -1 (interchange .mvs) after parsing
-  int process_priority = -1;  // below 0: the process gets a lower priority; else: no change
-  unsigned max_threads = 0;   // 0: as many as cores; at most 1024
-  // The lowest log level that is written. 0: warning, 1: info (results of stages), 2: debug
-  // (progress), 3: trace (details). Values below 0 count as 0, values above 3 as 3.
-  int verbosity = 2;
-};
 
 // What parse_options() must know of a program.
 struct ProgramOptions {
@@ -41,15 +25,6 @@ struct ProgramOptions {
   std::string version = "";  // the line that --version prints (base/version.h)
   // The long name of an option with which --input-file may be absent; empty: there is none.
   std::string instead_of_input = "";
-};
-
-// The result of parse_options().
-struct ParsedOptions {
-  CommonOptions common;
-  std::set<std::string> given;  // long names of the options on the command line or in the cfg file
-  MemoryBudget memory = {};  // of --max-memory; without a limit if the program has no such option
-  bool run = false;          // false: the program must do nothing more and exit with exit_code
-  int exit_code = 0;
 };
 
 // Parses the command line and the cfg file, fills the variables of `program` and applies the common
@@ -75,19 +50,6 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
 // The Context of a program: its events go to the log and to the console (base/console.h), and it
 // has the limits --max-memory and --max-threads.
 Context program_context(const ParsedOptions& parsed);
-
-// True if the user gave the option with the long name `name` on the command line or in the cfg
-// file.
-bool given(const ParsedOptions& parsed, const std::string& name);
-
-// Returns `path` as an absolute path. A relative `path` starts at the working folder. An empty path
-// stays empty.
-std::filesystem::path in_working_folder(const CommonOptions& common, const std::string& path);
-
-// Returns in_working_folder() for a file to write, the value of `option` ("--output-file"). Throws
-// an Error that names both if `path` ends in a slash, "." or "..", and so has no name for the file.
-std::filesystem::path output_in_working_folder(const CommonOptions& common, const std::string& path,
-                                               const std::string& option);
 
 // Starts the log ("HH:MM:SS [name] text" on standard output), runs `body` and returns its result,
 // the exit code. If `body` throws a std::exception, run_program() writes one line to standard error

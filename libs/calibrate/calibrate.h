@@ -5,6 +5,7 @@
 
 #include "calibrate/board_bundle.h"
 #include "pose/adjust.h"
+#include "pose/uncertainty.h"
 
 namespace axial::calibrate {
 

@@ -5,7 +5,7 @@
 // corners of the board as points.
 #pragma once
 
-#include "pose/adjust.h"
+#include "pose/adjust_options.h"
 
 namespace axial::calibrate {
 

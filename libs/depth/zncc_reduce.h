@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "depth/zncc.h"
+#include "depth/reference_patch.h"
 
 namespace axial::depth {
 namespace {  // one copy per translation unit: instruction sets must not share this code

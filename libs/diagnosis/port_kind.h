@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "pose/adjust.h"
+#include "pose/adjust_options.h"
 #include "pose/housing_numbers.h"
 
 namespace axial::diagnosis {

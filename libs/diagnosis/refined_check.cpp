@@ -9,6 +9,7 @@
 #include "diagnosis/track_sample.h"
 #include "pose/free_numbers.h"
 #include "pose/refine.h"
+#include "pose/uncertainty.h"
 #include "scene/decompositions.h"
 
 namespace axial::diagnosis {

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "io/bytes/json.h"
 #include "io/bytes/json_place.h"
+#include "map/stated_place.h"
 #include "map/up_direction.h"
 
 namespace axial::map {

@@ -3,9 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <filesystem>
-#include <optional>
-#include <string>
 
 #include "map/frame.h"
 #include "scene/local_frame.h"
@@ -24,15 +21,6 @@ struct WorldAxes {
 
 // True for a rotation, up to 1e-6: texts have fewer digits than numbers.
 bool is_rotation(const Eigen::Matrix3d& matrix);
-
-// What the file of a map states about its coordinates.
-struct StatedPlace {
-  std::optional<WorldAxes> axes;  // empty: not stated
-  std::string crs;                // WKT; empty: none
-};
-
-// Reads no pixels. Error that names the file if it cannot be read, and for malformed axes.
-StatedPlace stated_place(const std::filesystem::path& path);
 
 // The axes of a map with the frame `frame`, for a mesh with the frame `mesh_frame`.
 WorldAxes world_axes(const MapFrame& frame, const LocalFrame& mesh_frame);

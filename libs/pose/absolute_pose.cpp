@@ -13,6 +13,7 @@
 #include "base/hash.h"
 #include "base/order_statistics.h"
 #include "pose/adjust.h"
+#include "pose/adjust_options.h"
 #include "pose/observation_cost.h"
 #include "pose/p3p.h"
 #include "scene/decompositions.h"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "pose/adjust.h"
+#include "pose/adjust_options.h"
 #include "pose/observation_cost.h"
 
 namespace axial::pose {

@@ -14,6 +14,7 @@
 #include "io/colmap/colmap_scene.h"
 #include "lens/lens.h"
 #include "pose/tracks.h"
+#include "pose/uncertainty.h"
 
 namespace axial::pose {
 namespace {

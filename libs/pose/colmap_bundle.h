@@ -6,7 +6,8 @@
 
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
-#include "pose/adjust.h"
+#include "pose/adjust_options.h"
+#include "pose/uncertainty.h"
 
 namespace axial::pose {
 

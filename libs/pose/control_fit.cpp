@@ -8,8 +8,11 @@
 #include <limits>
 #include <optional>
 
+#include "pose/adjust.h"
 #include "pose/free_motions.h"
 #include "pose/known.h"
+#include "pose/rig_fit.h"
+#include "pose/uncertainty.h"
 #include "scene/decompositions.h"
 #include "scene/robust_similarity.h"
 

@@ -9,6 +9,8 @@
 
 #include "base/error.h"
 #include "base/order_statistics.h"
+#include "pose/adjust.h"
+#include "pose/uncertainty.h"
 #include "scene/decompositions.h"
 
 namespace axial::pose {

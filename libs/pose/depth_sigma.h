@@ -2,7 +2,8 @@
 // The uncertainty of the distances between cameras and points.
 #pragma once
 
-#include "pose/adjust.h"
+#include "base/context.h"
+#include "pose/adjust_options.h"
 
 namespace axial::pose {
 

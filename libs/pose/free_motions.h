@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "pose/adjust.h"
+#include "pose/adjust_options.h"
 
 namespace axial::pose {
 

@@ -8,7 +8,7 @@
 
 #include "axial/base.h"
 #include "base/option_list.h"
-#include "pose/adjust.h"
+#include "pose/adjust_options.h"
 #include "pose/housing_numbers.h"
 
 namespace axial::pose {

@@ -7,6 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include "pose/uncertainty.h"
+
 namespace axial::pose {
 namespace {
 

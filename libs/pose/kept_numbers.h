@@ -5,7 +5,8 @@
 #include <array>
 #include <vector>
 
-#include "pose/adjust.h"
+#include "pose/adjust_options.h"
+#include "pose/uncertainty.h"
 
 namespace axial::pose {
 

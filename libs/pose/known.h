@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "pose/adjust.h"
+#include "pose/adjust_options.h"
 
 namespace axial::pose {
 

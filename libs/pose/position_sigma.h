@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pose/adjust.h"
+#include "pose/adjust_options.h"
 
 namespace axial::pose {
 

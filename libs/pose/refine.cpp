@@ -10,11 +10,14 @@
 
 #include "base/error.h"
 #include "base/order_statistics.h"
+#include "pose/adjust.h"
 #include "pose/control_fit.h"
 #include "pose/control_start.h"
 #include "pose/kept_numbers.h"
 #include "pose/known.h"
 #include "pose/observation_weights.h"
+#include "pose/rig_fit.h"
+#include "pose/uncertainty.h"
 #include "scene/decompositions.h"
 
 namespace axial::pose {

@@ -7,6 +7,8 @@
 
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "pose/adjust.h"
+#include "pose/uncertainty.h"
 
 namespace axial::pose {
 namespace {

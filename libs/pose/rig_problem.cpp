@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "pose/adjust_problem.h"
+#include "pose/rig_fit.h"
 #include "pose/rig_residuals.h"
 
 namespace axial::pose {

@@ -10,27 +10,9 @@
 #include <vector>
 
 #include "pose/bundle.h"
+#include "pose/target.h"
 
 namespace axial::pose {
-
-// A target in a photograph, as it was measured. Pixels are pixels of the photograph, with centres
-// at integers.
-struct TargetImage {
-  std::size_t image = 0;  // index into Bundle::images
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
-  double sigma = 0;  // standard deviation of each coordinate [px]; 0: not known
-  // Ring: the symmetric matrix [1/px] that maps the ellipse of the dot, with its centre at `pixel`,
-  // to the unit circle. Zero: no ring.
-  Eigen::Matrix2d dot = Eigen::Matrix2d::Zero();
-  // Square: the corners; `pixel` is the intersection of the diagonals.
-  std::optional<std::array<Eigen::Vector2d, 4>> corners = {};
-};
-
-struct Target {
-  std::string label;
-  std::vector<TargetImage> images;
-  std::size_t source = 0;  // BundlePoint::source of its point; add_targets() sets it
-};
 
 // Adds a point for each target with two or more images, and an observation for each image. Targets
 // with fewer images get no point, and `source` 0. The start of a point is where its rays meet at

@@ -5,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "pose/target_points.h"
+#include "pose/bundle.h"
+#include "pose/target.h"
 #include "refractive/axial_ray.h"
 
 namespace axial::pose {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/uncertainty.h"
+
 #include <ceres/crs_matrix.h>
 #include <fmt/format.h>
 
@@ -9,7 +11,6 @@
 #include <map>
 #include <optional>
 
-#include "pose/adjust.h"
 #include "pose/adjust_problem.h"
 #include "pose/shape_sigma.h"
 #include "pose/sparse_cholesky.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "targets/board.h"
+#include "targets/board_shape.h"
 
 namespace axial::targets {
 

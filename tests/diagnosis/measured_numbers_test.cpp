@@ -11,9 +11,11 @@
 #include "diagnosis/refined_check.h"
 #include "diagnosis/words.h"
 #include "drawn.h"
+#include "pose/adjust.h"
 #include "pose/free_numbers.h"
 #include "pose/refine.h"
 #include "pose/survey.h"
+#include "pose/uncertainty.h"
 #include "scene/decompositions.h"
 #include "support/error_of.h"
 

@@ -48,8 +48,8 @@ TEST_F(GeoOffset, WrongFilesAreOneLine) {
   for (const auto& [text, expected] : std::vector<std::pair<std::string, std::string>>{
            {R"({"version": 2, "geo_offset": [1, 2, 3]})", "version is 2"},
            {R"({"version": 1, "geo_offset": [1, 2]})", "geo.geo_offset is [1,2]"},
-           {R"({"version": 1, "geo_offset": [1, 2, "3"]})", "expected three numbers"},
-           {R"({"version": 1, "geo_offset": 7})", "expected three numbers"},
+           {R"({"version": 1, "geo_offset": [1, 2, "3"]})", "expected 3 numbers"},
+           {R"({"version": 1, "geo_offset": 7})", "expected 3 numbers"},
            {R"({"version": 1})", "geo_offset"},
            {R"({"version": 1, "geo_offset": [1, 2, 3], "crs": 4326})", "crs"},
            {R"({"version": 1, "geo_offset": [1, 2, 1e999]})", "a.scene.geo.json"},

@@ -166,7 +166,7 @@ TEST_F(LensesTest, NamesKeyAndValue) {
   EXPECT_THAT(with("\"version\": 1", "\"version\": 2"), HasSubstr("version is 2"));
   EXPECT_THAT(with("perspective", "catadioptric"), HasSubstr("main.type is 'catadioptric'"));
   EXPECT_THAT(with("-0.1]", "0, 0, 0, 0, 0]"), HasSubstr("main.radial is [1,0,0,0,0,0]"));
-  EXPECT_THAT(with("-0.1", "\"x\""), HasSubstr("main.radial[1] is not a number"));
+  EXPECT_THAT(with("-0.1", "\"x\""), HasSubstr("main.radial[1] is \"x\", expected a number"));
   EXPECT_THAT(with("[1,", "[0,"), HasSubstr("main.radial begins with 0"));
   EXPECT_THAT(with("\"radial\"", "\"spread\": -1, \"radial\""), HasSubstr("main.spread is -1"));
   EXPECT_THAT(with("\"radial\"", "\"k1\": 1, \"radial\""), HasSubstr("'k1'"));

@@ -81,7 +81,7 @@ TEST_F(PortSigmasTest, ErrorsNameFileFieldAndValue) {
   EXPECT_THAT(error_with("\"normal_degrees\"", "\"center_m\""),
               HasSubstr("main.sigma: unknown key 'center_m'"));
   EXPECT_THAT(error_with("{ \"center_m\": [0.001, 0.002, 0.003] }", "0.01"),
-              HasSubstr("dome.sigma is not an object"));
+              HasSubstr("dome.sigma is 0.01, expected an object"));
   EXPECT_THAT(test::error_of([&] {
                 read(replaced(kLake, "\"n_water\": 1.34", "\"n_water\": 1.34, \"sigma\": {}"));
               }),

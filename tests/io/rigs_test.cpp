@@ -127,7 +127,7 @@ TEST_F(RigsTest, RefusesWrongConfigurations) {
               HasSubstr("camera 2.cam_from_rig_rotation is [0.5,0.5], expected 4 numbers"));
   EXPECT_THAT(wrong("[0.5, 0.5, 0.5, 0.5]", "[0, 0, 0, 0]"), HasSubstr("rig 1, camera 2"));
   EXPECT_THAT(wrong("\"cam_from_rig_translation\": [0.1, 0.2, 0.3],", ""),
-              HasSubstr("'cam_from_rig_translation' is missing"));
+              HasSubstr(".cam_from_rig_translation is missing"));
   EXPECT_THAT(wrong("0.001", "0"), HasSubstr("sigma_translation is 0, expected a value above 0"));
   put(folder_ / "rig.json", "{}");
   EXPECT_THAT(error("rig.json"), HasSubstr("is not a list of rigs"));

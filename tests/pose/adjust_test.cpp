@@ -10,6 +10,7 @@
 #include "drawn.h"
 #include "pose/depth_sigma.h"
 #include "pose/survey.h"
+#include "pose/uncertainty.h"
 #include "support/error_of.h"
 
 namespace axial::pose {

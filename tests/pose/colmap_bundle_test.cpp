@@ -7,6 +7,7 @@
 
 #include "pose/adjust.h"
 #include "pose/colmap_survey.h"
+#include "pose/uncertainty.h"
 #include "support/error_of.h"
 
 namespace axial::pose {

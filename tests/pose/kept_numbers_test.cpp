@@ -7,6 +7,8 @@
 #include <Eigen/LU>
 #include <random>
 
+#include "pose/uncertainty.h"
+
 namespace axial::pose {
 namespace {
 

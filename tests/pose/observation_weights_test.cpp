@@ -8,6 +8,7 @@
 #include "drawn.h"
 #include "pose/refine.h"
 #include "pose/survey.h"
+#include "pose/uncertainty.h"
 
 namespace axial::pose {
 namespace {

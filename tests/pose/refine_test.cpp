@@ -11,6 +11,7 @@
 
 #include "drawn.h"
 #include "pose/survey.h"
+#include "pose/uncertainty.h"
 
 namespace axial::pose {
 namespace {

@@ -14,6 +14,7 @@
 #include "base/out_of_memory.h"
 #include "io/bytes/json.h"
 #include "pose/survey.h"
+#include "pose/uncertainty.h"
 #include "support/empty_folder.h"
 #include "support/error_of.h"
 

@@ -7,8 +7,11 @@
 #include <Eigen/Geometry>
 #include <random>
 
+#include "pose/adjust.h"
 #include "pose/refine.h"
+#include "pose/rig_fit.h"
 #include "pose/rig_survey.h"
+#include "pose/uncertainty.h"
 
 namespace axial::pose {
 namespace {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "pose/adjust.h"
+#include "pose/adjust_options.h"
 
 namespace axial::pose::testing {
 

@@ -12,6 +12,7 @@
 #include "pose/refine.h"
 #include "pose/target_shape.h"
 #include "pose/target_survey.h"
+#include "pose/uncertainty.h"
 #include "scene/decompositions.h"
 
 namespace axial::pose {

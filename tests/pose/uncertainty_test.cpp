@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Compares the standard deviations of bundle adjustment with a dense inverse.
+#include "pose/uncertainty.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -7,7 +9,7 @@
 #include <algorithm>
 #include <random>
 
-#include "pose/adjust.h"
+#include "pose/adjust_options.h"
 #include "pose/survey.h"
 
 namespace axial::pose {

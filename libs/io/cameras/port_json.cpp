@@ -197,7 +197,8 @@ void read_list(const JsonPlace& place, const char* key, std::span<double> number
   const JsonPlace list = place.at(key);
   if (!list.json.is_array() || list.json.size() > numbers.size())
     list.refuse(fmt::format("at most {} numbers", numbers.size()));
-  std::ranges::copy(list.numbers(list.json.size()), numbers.begin());
+  std::size_t i = 0;
+  for (const JsonPlace& element : list.elements()) numbers[i++] = element.number();
 }
 
 double read_type(const JsonPlace& place) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pose/rig.h"
+#include "pose/rig_fit.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "base/order_statistics.h"
-#include "pose/bundle.h"
 
 namespace axial::pose {
 namespace {
