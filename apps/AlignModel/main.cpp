@@ -52,10 +52,11 @@ evaluate::CentreAlignment align(const io::ColmapModel& model, const io::ColmapMo
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
-  const fs::path folder = io::find_colmap_model(options.model);
-  const fs::path reference_folder = io::find_colmap_model(options.reference);
-  io::ColmapModel model = io::read_colmap_model(folder);
-  auto reference = io::read_colmap_model(reference_folder);
+  const Context context = program_context(options.parsed);
+  const fs::path folder = io::find_colmap_model(options.model, context);
+  const fs::path reference_folder = io::find_colmap_model(options.reference, context);
+  io::ColmapModel model = io::read_colmap_model(folder, context);
+  auto reference = io::read_colmap_model(reference_folder, context);
   require_not_an_input(options.output, std::vector{folder, reference_folder}, "--output-folder");
   io::require_no_binary_model(options.output);
   require_writable_folder(options.output);
@@ -65,7 +66,8 @@ int run(int argc, char** argv) {
   evaluate::apply(alignment.similarity, model);
   const io::Housing carried = io::housing_of(model.cameras);
   if (!carried.ports.empty())
-    if (const auto line = diagnosis::import_warning(model, carried, {})) log_warning("{}", *line);
+    if (const auto line = diagnosis::import_warning(model, carried, {}, context))
+      log_warning("{}", *line);
   io::leave(frame, model);
   write_folder(options.output,
                [&](const fs::path& staging) { io::write_colmap_text(staging, model); });

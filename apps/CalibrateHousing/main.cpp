@@ -2,7 +2,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "base/parallel.h"
 #include "base/same_file.h"
 #include "calibrate/coverage.h"
 #include "calibrate/photographs.h"
@@ -17,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-io::ColmapCamera load_lens(const fs::path& path) {
-  const std::vector<io::ColmapCamera> cameras = io::read_colmap_cameras(path);
+io::ColmapCamera load_lens(const fs::path& path, const Context& context) {
+  const std::vector<io::ColmapCamera> cameras = io::read_colmap_cameras(path, context);
   if (cameras.size() != 1)
     fail_in(path, "has {} cameras, expected one: the camera to calibrate", cameras.size());
   return cameras.front();
@@ -35,12 +34,13 @@ std::string port_to_calibrate(const Options& options, const io::Housing& housing
 }
 
 // The housing before the calibration.
-io::Housing load_housing(const Options& options, const io::ColmapCamera& lens) {
+io::Housing load_housing(const Options& options, const io::ColmapCamera& lens,
+                         const Context& context) {
   if (options.housing.empty()) {
     if (!lens.port) fail("--housing is missing: the approximate port");
     return io::housing_with(io::to_housing_port(*lens.port));
   }
-  io::Housing housing = io::read_housing(options.housing);
+  io::Housing housing = io::read_housing(options.housing, io::PortValues::checked, context);
   io::refuse_water_surfaces(housing, options.housing);
   return housing;
 }
@@ -154,9 +154,9 @@ void write(const Options& options, const calibrate::Calibration& calibration, io
 int run(int argc, char** argv) {
   Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
-  const ThreadLimit threads(options.parsed.common.max_threads);
-  const io::ColmapCamera lens = load_lens(options.lens);
-  const io::Housing housing = load_housing(options, lens);
+  const Context context = program_context(options.parsed);
+  const io::ColmapCamera lens = load_lens(options.lens, context);
+  const io::Housing housing = load_housing(options, lens, context);
   const std::string port_name = port_to_calibrate(options, housing, lens);
   const refractive::Port<double> port = known_port(options, housing, port_name, lens.id);
   if (lens.port && !io::same_port(io::to_housing_port(*lens.port), io::to_housing_port(port)))
@@ -165,7 +165,8 @@ int run(int argc, char** argv) {
   set_unknown(options, port);
   const std::vector<fs::path> photographs = calibrate::photographs_in(options.input);
   check_outputs(options, photographs);
-  const auto views = calibrate::find_views(photographs, options.board, lens, options.bit_depth);
+  const auto views =
+      calibrate::find_views(photographs, options.board, lens, options.bit_depth, context);
   const auto calibration = calibrate::calibrate(
       lens, port, views, calibrate::corners_of(options.board), options.calibrate);
   const std::vector<std::string> lines = report_lines(calibration, port_name);

@@ -48,10 +48,11 @@ LocalFrame lost_offset(const fs::path& mesh, const fs::path& scene) {
 }
 
 // The shape of a survey in `frame`. `scene`: of the survey; empty: not known.
-Mesh read_shape(const fs::path& path, const fs::path& scene, const LocalFrame& frame) {
+Mesh read_shape(const fs::path& path, const fs::path& scene, const LocalFrame& frame,
+                const Context& context) {
   const LocalFrame lost = lost_offset(path, scene);
   if (lost.is_world()) return io::read_shape(path, frame);
-  io::tell_lost_offset(path, lost);
+  io::tell_lost_offset(path, lost, context);
   Mesh mesh = io::read_shape(path);
   for (Eigen::Vector3f& vertex : mesh.vertices)
     vertex = frame.to_local(lost.to_world(vertex.cast<double>())).cast<float>();
@@ -61,7 +62,7 @@ Mesh read_shape(const fs::path& path, const fs::path& scene, const LocalFrame& f
 Mesh read_survey(const fs::path& path, const fs::path& scene, const LocalFrame& frame,
                  const Context& context) {
   context.memory().require(io::bytes_to_read_mesh(path), "reading " + path.string());
-  Mesh mesh = read_shape(path, scene, frame);
+  Mesh mesh = read_shape(path, scene, frame, context);
   mesh.colors = {};
   naming(path, [&] { check_mesh(mesh); });
   remove_marked_faces(mesh);

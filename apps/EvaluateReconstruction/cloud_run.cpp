@@ -230,14 +230,14 @@ void require_kind(const Options& options, const Input& input) {
 
 }  // namespace
 
-nlohmann::ordered_json run_cloud(const Options& options) {
-  const Models models = read_models(options);
-  Input input = read_input(options, models.frames.input);
+nlohmann::ordered_json run_cloud(const Options& options, const Context& context) {
+  const Models models = read_models(options, context);
+  Input input = read_input(options, models.frames.input, context);
   const Mesh truth = io::read_shape(options.truth, models.frames.truth);
   const geometry::Surface surface = naming(options.truth, [&] { return geometry::Surface(truth); });
   naming(options.truth,
          [&] { geometry::sample_surface(truth, 1, options.seed); });  // needs an area
-  const std::vector<evaluate::View> views = read_views(options, models);
+  const std::vector<evaluate::View> views = read_views(options, models, context);
   if (options.strip) naming(options.cameras_model, [&] { evaluate::require_strip(views); });
   require_kind(options, input);
   if (!options.picture.empty()) view_of_picture(options, views);  // an error before the work
@@ -270,10 +270,10 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   return report;
 }
 
-nlohmann::ordered_json run_rendering(const Options& options) {
-  const Models models = read_models(options);
-  const Input input = read_input(options, models.frames.input);
-  const std::vector<evaluate::View> views = read_views(options, models);
+nlohmann::ordered_json run_rendering(const Options& options, const Context& context) {
+  const Models models = read_models(options, context);
+  const Input input = read_input(options, models.frames.input, context);
+  const std::vector<evaluate::View> views = read_views(options, models, context);
   require_kind(options, input);
   const std::vector<RenderTask> tasks = plan_rendering(options, input, views, false);
   return {{"kind", "mesh"}, {"render", render(options, input, tasks, nullptr, {})}};

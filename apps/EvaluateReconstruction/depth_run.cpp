@@ -34,9 +34,9 @@ void check_depth_run(const Options& options) {
 
 }  // namespace
 
-nlohmann::ordered_json run_depth_map(const Options& options) {
+nlohmann::ordered_json run_depth_map(const Options& options, const Context& context) {
   check_depth_run(options);
-  const DepthMap map = io::read_dmap(options.input).map;
+  const DepthMap map = io::read_dmap(options.input, io::DmapSide::used, context).map;
   const cv::Mat1f truth = io::read_float_tiff(options.truth);
   if (truth.size() != map.depth.size())
     log_info("The truth is {} x {} and is sampled at the map's {} x {} pixel centres", truth.cols,

@@ -41,27 +41,27 @@ bool is_mesh(const fs::path& path) {
 
 }  // namespace
 
-Models read_models(const Options& options) {
+Models read_models(const Options& options, const Context& context) {
   Models models;
   checked_frame(options.input);
   if (!options.truth.empty()) models.frames.truth = checked_frame(options.truth);
   if (!options.cameras.empty()) {
-    models.reference = io::read_colmap_model(options.cameras_model);
+    models.reference = io::read_colmap_model(options.cameras_model, context);
     models.frames.truth = io::enter_local_frame(models.reference);
   }
   models.frames.input = models.frames.truth;
   if (options.align == "centres") {
-    models.estimated = io::read_colmap_model(options.estimated_model);
+    models.estimated = io::read_colmap_model(options.estimated_model, context);
     models.frames.input = io::enter_local_frame(models.estimated);
   }
   return models;
 }
 
-Input read_input(const Options& options, const LocalFrame& frame) {
+Input read_input(const Options& options, const LocalFrame& frame, const Context& context) {
   const fs::path& path = options.input;
   Input input;
   if (!options.rendered_views.empty() && io::is_textured_mesh(path)) {
-    input.texture = io::read_textured_mesh(path, frame);
+    input.texture = io::read_textured_mesh(path, frame, context);
     input.mesh = std::exchange(input.texture->mesh, {});
   } else if (is_mesh(path)) {
     input.mesh = io::read_shape(path, frame);
@@ -73,20 +73,22 @@ Input read_input(const Options& options, const LocalFrame& frame) {
   return input;
 }
 
-std::vector<evaluate::View> read_views(const Options& options, const Models& models) {
+std::vector<evaluate::View> read_views(const Options& options, const Models& models,
+                                       const Context& context) {
   if (options.cameras.empty()) return {};
   std::optional<io::Housing> housing;
   if (!options.housing.empty()) {
-    housing =
-        io::in_frame(models.frames.truth, io::read_housing(options.housing, models.reference));
+    housing = io::in_frame(models.frames.truth,
+                           io::read_housing(options.housing, models.reference, context));
     for (const std::string& entry : io::unused_entries(*housing, models.reference))
       log_warning("{}: no image matches {}", options.housing.string(), entry);
     io::warn_of_other_ports(*housing, options.housing.string(),
                             io::housing_of(models.reference.cameras),
-                            "the model in " + options.cameras.string(), models.reference);
+                            "the model in " + options.cameras.string(), models.reference, context);
     if (io::gives_no_image_a_port(*housing, models.reference))
       UnusedInput(options.allow_missing)
-          .report(fmt::format("--housing {}: gives no image a port", options.housing.string()));
+          .report(fmt::format("--housing {}: gives no image a port", options.housing.string()),
+                  context);
   }
   return naming(options.cameras_model, [&] {
     return evaluate::views_of_model(models.reference, housing ? &*housing : nullptr);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "axial/scene_images.h"
+#include "base/context.h"
 #include "base/naming.h"
 #include "evaluate/alignment.h"
 #include "evaluate/point_uncertainty.h"
@@ -48,13 +49,14 @@ struct Models {
 };
 
 // Warns of float coordinates far from their origin: they had lost digits when the file was written.
-Models read_models(const Options& options);
+Models read_models(const Options& options, const Context& context);
 
 // Reads the reconstruction with positions in `frame`. Textures are read only if views are to be
 // rendered.
-Input read_input(const Options& options, const LocalFrame& frame);
+Input read_input(const Options& options, const LocalFrame& frame, const Context& context);
 
 // The cameras of `models.reference` behind the ports of the housing file; empty without --cameras.
-std::vector<evaluate::View> read_views(const Options& options, const Models& models);
+std::vector<evaluate::View> read_views(const Options& options, const Models& models,
+                                       const Context& context);
 
 }  // namespace axial::apps

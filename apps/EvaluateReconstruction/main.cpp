@@ -3,7 +3,6 @@
 
 #include "base/atomic_file.h"
 #include "base/files_in.h"
-#include "base/parallel.h"
 #include "base/same_file.h"
 #include "io/bytes/json.h"
 #include "io/colmap/colmap.h"
@@ -44,25 +43,27 @@ void check_outputs(const Options& options) {
 }
 
 // Called once, because it logs which of several models is read.
-void find_models(Options& options) {
-  if (!options.cameras.empty()) options.cameras_model = io::find_colmap_model(options.cameras);
+void find_models(Options& options, const Context& context) {
+  if (!options.cameras.empty())
+    options.cameras_model = io::find_colmap_model(options.cameras, context);
   if (!options.estimated.empty())
-    options.estimated_model = io::find_colmap_model(options.estimated);
+    options.estimated_model = io::find_colmap_model(options.estimated, context);
 }
 
 int run(int argc, char** argv) {
   Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
-  find_models(options);
-  const ThreadLimit threads(options.parsed.common.max_threads);
+  const Context context = program_context(options.parsed);
+  find_models(options, context);
   check_outputs(options);
   const bool is_depth_map = options.input.extension() == ".dmap";
   nlohmann::ordered_json report{{"input", options.input.filename().string()}};
   if (!options.truth.empty()) report["truth"] = options.truth.filename().string();
   if (is_depth_map)
-    report.update(run_depth_map(options));
+    report.update(run_depth_map(options, context));
   else
-    report.update(options.truth.empty() ? run_rendering(options) : run_cloud(options));
+    report.update(options.truth.empty() ? run_rendering(options, context)
+                                        : run_cloud(options, context));
   if (!options.json.empty()) write_atomically(options.json, io::to_text(report, 1) + "\n");
   return 0;
 }

@@ -6,12 +6,13 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "base/context.h"
 #include "options.h"
 
 namespace axial::apps {
 
-nlohmann::ordered_json run_cloud(const Options& options);
-nlohmann::ordered_json run_rendering(const Options& options);
-nlohmann::ordered_json run_depth_map(const Options& options);
+nlohmann::ordered_json run_cloud(const Options& options, const Context& context);
+nlohmann::ordered_json run_rendering(const Options& options, const Context& context);
+nlohmann::ordered_json run_depth_map(const Options& options, const Context& context);
 
 }  // namespace axial::apps

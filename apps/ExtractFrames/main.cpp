@@ -7,7 +7,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "base/parallel.h"
 #include "base/program.h"
 #include "base/same_file.h"
 #include "base/version.h"
@@ -96,9 +95,10 @@ void warn_of_rolling_shutter(const video::ChosenFrames& found) {
         found.clip.string(), least, pixels);
 }
 
-video::ChosenFrames choose(const fs::path& clip, const Options& options) {
+video::ChosenFrames choose(const fs::path& clip, const Options& options, const Context& context) {
   video::ChosenFrames found = video::choose_in_clip(
-      clip, options.motion, console_progress("Measured frames of " + clip.filename().string()));
+      clip, options.motion, console_progress("Measured frames of " + clip.filename().string()),
+      context);
   log_info("{}: {} of {} frames chosen, {} x {} pixels, {:.1f} s", clip.string(),
            found.chosen.size(), found.frames.size(), found.size.width, found.size.height,
            static_cast<double>(found.frames.size()) / found.frames_per_second);
@@ -109,13 +109,13 @@ video::ChosenFrames choose(const fs::path& clip, const Options& options) {
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
-  const ThreadLimit threads(options.parsed.common.max_threads);
+  const Context context = program_context(options.parsed);
   for (const fs::path& clip : options.clips) require_no_frames(folder_of(clip, options));
   require_writable_folder(options.output);
   if (!options.json.empty()) require_writable(options.json);
   nlohmann::json clips = nlohmann::json::array();
   std::vector<video::ChosenFrames> all;
-  for (const fs::path& clip : options.clips) all.push_back(choose(clip, options));
+  for (const fs::path& clip : options.clips) all.push_back(choose(clip, options, context));
   write_folder(options.output, [&](const fs::path& staging) {
     for (const video::ChosenFrames& found : all) {
       make_folder(staging / found.clip.stem());

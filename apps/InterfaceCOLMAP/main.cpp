@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/output_lock.h"
-#include "base/parallel.h"
 #include "base/progress.h"
 #include "base/same_file.h"
 #include "base/unused_input.h"
@@ -44,16 +43,17 @@ std::size_t count_distorted(const Scene& scene) {
 // The housing file, or the ports that the model's cameras carry. COLMAP-Underwater also writes
 // ports into models whose poses it computed without refraction. The files do not tell this, but the
 // tracks do; then this function warns and sets `warned`.
-io::Housing load_housing(const Options& options, const io::ColmapModel& model, bool& warned) {
+io::Housing load_housing(const Options& options, const io::ColmapModel& model, bool& warned,
+                         const Context& context) {
   io::Housing carried = io::housing_of(model.cameras);
   if (!options.housing_file.empty()) {
-    io::Housing housing = io::read_housing(options.housing_file, model);
+    io::Housing housing = io::read_housing(options.housing_file, model, context);
     io::warn_of_other_ports(housing, options.housing_file.string(), carried,
-                            "the model in " + options.colmap_folder.string(), model);
+                            "the model in " + options.colmap_folder.string(), model, context);
     if (io::gives_no_image_a_port(housing, model))
       UnusedInput(options.allow_missing)
-          .report(
-              fmt::format("--housing {}: gives no image a port", options.housing_file.string()));
+          .report(fmt::format("--housing {}: gives no image a port", options.housing_file.string()),
+                  context);
     return housing;
   }
   if (carried.ports.empty()) return carried;
@@ -155,16 +155,17 @@ std::string say_missing(const Scene& scene, const Options& options) {
 
 // The scene with its lenses and ports, and its points or the cloud that replaces them. `frame`: the
 // scene's frame.
-Scene read_scene(const Options& options, LocalFrame& frame) {
-  Scene scene = io::read_mvs(options.scene_file, options.parsed.common.working_folder);
-  frame = io::enter_local_frame(scene, options.scene_file);
-  io::attach_lenses_beside(scene, options.scene_file);
+Scene read_scene(const Options& options, LocalFrame& frame, const Context& context) {
+  Scene scene = io::read_mvs(options.scene_file, options.parsed.common.working_folder, context);
+  frame = io::enter_local_frame(scene, options.scene_file, context);
+  io::attach_lenses_beside(scene, options.scene_file, context);
   const fs::path housing_file = io::housing_beside(options.scene_file);
   std::error_code error;
-  if (fs::exists(housing_file, error))
-    io::attach_ports(scene, io::in_frame(frame, io::read_housing(housing_file)),
-                     housing_file.string());
-  if (!options.point_cloud.empty()) io::use_point_cloud(scene, frame, options.point_cloud);
+  if (fs::exists(housing_file, error)) {
+    const io::Housing housing = io::read_housing(housing_file, io::PortValues::checked, context);
+    io::attach_ports(scene, io::in_frame(frame, housing), housing_file.string(), context);
+  }
+  if (!options.point_cloud.empty()) io::use_point_cloud(scene, frame, options.point_cloud, context);
   return scene;
 }
 
@@ -211,9 +212,9 @@ void write_export(const Options& options, const fs::path& folder, const io::Colm
   });
 }
 
-int export_scene(const Options& options) {
+int export_scene(const Options& options, const Context& context) {
   LocalFrame frame;
-  Scene scene = read_scene(options, frame);
+  Scene scene = read_scene(options, frame, context);
   const fs::path images = find_images(options, scene);
   io::ColmapModel model = io::export_colmap_model(scene, images);
   io::leave(frame, model);
@@ -248,7 +249,7 @@ struct Input {
 };
 
 // Reports the images that are missing. If missing images are allowed, removes them from the model.
-void leave_out_missing(const Options& options, io::ColmapModel& model) {
+void leave_out_missing(const Options& options, io::ColmapModel& model, const Context& context) {
   const std::size_t all = model.images.size();
   const auto missing = io::remove_missing_images(model, options.image_folder);
   if (missing.empty()) return;
@@ -256,19 +257,19 @@ void leave_out_missing(const Options& options, io::ColmapModel& model) {
       missing.size() > 1 ? fmt::format(", and {} more are missing, of {}", missing.size() - 1, all)
                          : "";
   UnusedInput(options.allow_missing)
-      .report(fmt::format("{}: image not found{}", missing.front().string(), others));
+      .report(fmt::format("{}: image not found{}", missing.front().string(), others), context);
 }
 
-Input read_input(const Options& options) {
+Input read_input(const Options& options, const Context& context) {
   Input input;
-  input.folder = io::find_colmap_model(options.colmap_folder);
-  input.model = io::read_colmap_model(input.folder);
+  input.folder = io::find_colmap_model(options.colmap_folder, context);
+  input.model = io::read_colmap_model(input.folder, context);
   const io::ColmapModel& model = input.model;
   log_info("{}: {} images, {} cameras, {} points", input.folder.string(), model.images.size(),
            model.cameras.size(), model.points.size());
-  leave_out_missing(options, input.model);
+  leave_out_missing(options, input.model, context);
   input.frame = io::enter_local_frame(input.model);
-  input.housing = load_housing(options, model, input.warned);
+  input.housing = load_housing(options, model, input.warned, context);
   say_image_folder(options, model);
   check_outputs(options, input.folder, model);
   return input;
@@ -277,7 +278,7 @@ Input read_input(const Options& options) {
 // Attaches the ports to the scene, and writes the housing file beside it. If neither --housing nor
 // the model gives ports, a housing file that is there already is kept.
 void write_ports(const Options& options, const Input& input, const io::ColmapImport& import,
-                 Scene& scene) {
+                 Scene& scene, const Context& context) {
   const fs::path housing_file = io::housing_beside(options.scene_file);
   std::error_code ignored;
   if (options.housing_file.empty() && input.housing.ports.empty()) {
@@ -290,10 +291,10 @@ void write_ports(const Options& options, const Input& input, const io::ColmapImp
     log_warning("{}: no image matches {}", options.housing_file.string(), entry);
   io::warn_of_housing_beside(
       scene, options.scene_file, by_image,
-      options.housing_file.empty() ? options.colmap_folder : options.housing_file);
+      options.housing_file.empty() ? options.colmap_folder : options.housing_file, context);
   // Messages about ports that the model carries name the housing file that is written here.
   const fs::path& ports_from = options.housing_file.empty() ? housing_file : options.housing_file;
-  io::attach_ports(scene, io::in_frame(input.frame, by_image), ports_from.string());
+  io::attach_ports(scene, io::in_frame(input.frame, by_image), ports_from.string(), context);
   io::write_housing(housing_file, by_image);
   log_info("{}: {} of {} images behind a port", housing_file.string(), count_behind_ports(scene),
            scene.images.size());
@@ -307,22 +308,23 @@ void write_lenses(const Options& options, const io::SceneLenses& lenses, const S
              io::lenses_beside(options.scene_file).string(), distorted, scene.images.size());
 }
 
-void write_frame(const Options& options, const LocalFrame& frame) {
-  io::write_geo_offset_beside(options.scene_file, frame);
+void write_frame(const Options& options, const LocalFrame& frame, const Context& context) {
+  io::write_geo_offset_beside(options.scene_file, frame, context);
   if (!frame.is_world())
     log_info("{}: coordinates are relative to ({}, {}, {})",
              io::geo_offset_beside(options.scene_file).string(), frame.origin.x(), frame.origin.y(),
              frame.origin.z());
 }
 
-void warn_of_misfit(const Options& options, const Input& input) {
+void warn_of_misfit(const Options& options, const Input& input, const Context& context) {
   const io::Housing ports = io::in_frame(input.frame, input.housing);
-  if (const auto line = diagnosis::import_warning(input.model, ports, options.image_folder))
+  if (const auto line =
+          diagnosis::import_warning(input.model, ports, options.image_folder, context))
     log_warning("{}", *line);
 }
 
-int import_model(const Options& options) {
-  const Input input = read_input(options);
+int import_model(const Options& options, const Context& context) {
+  const Input input = read_input(options, context);
   const fs::path folder = options.scene_file.parent_path();
   const OutputLock lock = lock_output(options.scene_file);
   make_folder(folder);  // tells why it cannot be made
@@ -334,32 +336,33 @@ int import_model(const Options& options) {
                                 undistort};
   Scene scene = io::import_colmap_scene(input.model, import, console_progress("Undistorted images"),
                                         progress_of_many("Prepared cameras"),
-                                        progress_of_many("Checked images"));
+                                        progress_of_many("Checked images"), context);
   const io::SceneLenses lenses = io::lenses_of(scene, options.scene_file);
   // The housing is written first: a scene without its housing would be read as dry.
-  write_ports(options, input, import, scene);
+  write_ports(options, input, import, scene, context);
   write_lenses(options, lenses, scene, behind_ports);
-  write_frame(options, input.frame);
+  write_frame(options, input.frame, context);
   io::write_mvs(options.scene_file, scene, folder,
                 options.normalize ? io::MvsIntrinsics::normalised : io::MvsIntrinsics::pixels);
   log_info("{}: {} images, {} points", options.scene_file.string(), scene.images.size(),
            scene.points.size());
   // The ports of an existing housing file beside the scene are not known here.
   const bool ports_unknown = input.housing.ports.empty() && behind_ports;
-  if (!input.warned && !ports_unknown) warn_of_misfit(options, input);
+  if (!input.warned && !ports_unknown) warn_of_misfit(options, input, context);
   return 0;
 }
 
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
-  const ThreadLimit threads(options.parsed.common.max_threads);
+  const Context context = program_context(options.parsed);
   if (!options.masks.masks.empty()) {
     const OutputLock lock = lock_output(options.masks.output);
-    io::write_colmap_masks(options.masks, console_progress("Wrote masks"));
+    io::write_colmap_masks(options.masks, console_progress("Wrote masks"), context);
     return 0;
   }
-  return options.export_folder.empty() ? import_model(options) : export_scene(options);
+  return options.export_folder.empty() ? import_model(options, context)
+                                       : export_scene(options, context);
 }
 
 }  // namespace

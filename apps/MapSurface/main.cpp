@@ -49,10 +49,10 @@ TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame, const 
   context.memory().require(bytes, work);
   TexturedMesh mesh;
   if (io::is_textured_mesh(settings.mesh)) {
-    context.memory().require(bytes + io::bytes_to_read_textures(settings.mesh), work);
-    mesh = io::read_textured_mesh_of_scene(frame, settings.mesh);
+    context.memory().require(bytes + io::bytes_to_read_textures(settings.mesh, context), work);
+    mesh = io::read_textured_mesh_of_scene(frame, settings.mesh, context);
   } else {
-    mesh.mesh = io::read_mesh_of_scene(frame, settings.mesh);
+    mesh.mesh = io::read_mesh_of_scene(frame, settings.mesh, context);
   }
   if (mesh.mesh.faces.empty()) fail_in(settings.mesh, "the mesh has no faces");
   log_info("{}: {} vertices, {} faces, {} textures", settings.mesh.string(),

@@ -50,7 +50,7 @@ Mesh reconstruct(const io::SceneWithCameras& scene, const Options& options,
   if (!file.empty())
     context.memory().require(io::bytes_to_read_cloud(file), "reading " + file.string());
   PointCloud cloud =
-      file.empty() ? cloud_of(scene.scene) : io::read_cloud_of_scene(scene.frame, file);
+      file.empty() ? cloud_of(scene.scene) : io::read_cloud_of_scene(scene.frame, file, context);
   const fs::path& source = file.empty() ? options.survey.files.scene : file;
   context.info("Cloud {}: {} points", source.filename().string(), cloud.size());
   if (!file.empty())
@@ -66,7 +66,7 @@ Mesh clean_given(const io::SceneWithCameras& scene, const Options& options, bool
                  const Context& context) {
   context.memory().require(io::bytes_to_read_mesh(options.mesh),
                            "reading " + options.mesh.string());
-  const Mesh mesh = io::read_mesh_of_scene(scene.frame, options.mesh);
+  const Mesh mesh = io::read_mesh_of_scene(scene.frame, options.mesh, context);
   belong::check_surface(scene.scene, belong::shape_of(mesh),
                         {options.mesh, options.survey.files.scene}, context);
   keep = keep || !mesh.unseen.empty();
@@ -89,8 +89,8 @@ Mesh without_unseen(Mesh mesh, const io::SceneWithCameras& scene, const Options&
   unseen.cut_off = clean.cut_off;
   std::vector<Eigen::Vector3f> points;
   if (unseen.sizes_tell)
-    points =
-        mesh::some_positions(source_of(scene, options), mesh::enough_points(mesh.faces.size()));
+    points = mesh::some_positions(source_of(scene, options, context),
+                                  mesh::enough_points(mesh.faces.size()));
   unseen.points = points;
   return naming(source, [&] {
     return mesh::treat_unseen(std::move(mesh), geometry::posed_cameras(scene.scene), unseen,

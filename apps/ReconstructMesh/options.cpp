@@ -96,7 +96,8 @@ void declare_cleaning(OptionList& list, Options& options) {
 void take_paths(const Raw& raw, Options& options) {
   options.survey.files = io::scene_files(raw.scene, raw.input, options.parsed);
   options.output = io::mesh_file({options.survey.files.scene, options.output, raw.export_type,
-                                  given(options.parsed, "export-type"), "_mesh"});
+                                  given(options.parsed, "export-type"), "_mesh"},
+                                 program_context(options.parsed));
   refuse_control_characters(options.output, "--output-file");
 }
 

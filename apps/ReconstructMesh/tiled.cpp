@@ -76,22 +76,23 @@ fs::path cloud_file(const Options& options) {
   return fs::exists(beside, error) ? beside : fs::path();
 }
 
-mesh::CloudSource source_of(const io::SceneWithCameras& scene, const Options& options) {
-  return [&scene, file = cloud_file(options)](const io::CloudPortionSink& sink) {
+mesh::CloudSource source_of(const io::SceneWithCameras& scene, const Options& options,
+                            const Context& context) {
+  return [&scene, &context, file = cloud_file(options)](const io::CloudPortionSink& sink) {
     if (file.empty()) {
       PointCloud points = cloud_of(scene.scene);
       const std::size_t count = points.size();
       sink(std::move(points), count);
     } else {
-      io::read_cloud_of_scene_in_portions(scene.frame, file, kPortion, sink);
+      io::read_cloud_of_scene_in_portions(scene.frame, file, kPortion, sink, context);
     }
   };
 }
 
 void make_tile(const io::SceneWithCameras& scene, const Options& options, const Context& context) {
   naming(named_source(options), [&] {
-    mesh::reconstruct_tile(*options.tiling.tile - 1, source_of(scene, options), scene.scene,
-                           options.reconstruct, run_of(options), context);
+    mesh::reconstruct_tile(*options.tiling.tile - 1, source_of(scene, options, context),
+                           scene.scene, options.reconstruct, run_of(options), context);
   });
   context.info("{}: tile {} of {} is complete", tile_folder(options).string(), *options.tiling.tile,
                options.tiling.count);
@@ -99,8 +100,8 @@ void make_tile(const io::SceneWithCameras& scene, const Options& options, const 
 
 Mesh join_tiles(const io::SceneWithCameras& scene, const Options& options, const Context& context) {
   return naming(named_source(options), [&] {
-    return mesh::reconstruct_in_tiles(source_of(scene, options), scene.scene, options.reconstruct,
-                                      run_of(options), context);
+    return mesh::reconstruct_in_tiles(source_of(scene, options, context), scene.scene,
+                                      options.reconstruct, run_of(options), context);
   });
 }
 

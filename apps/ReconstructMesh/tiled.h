@@ -16,8 +16,9 @@ namespace axial::apps {
 // points of the scene.
 std::filesystem::path cloud_file(const Options& options);
 
-// Reads the cloud to use. `scene` and `options` must outlive the result.
-mesh::CloudSource source_of(const io::SceneWithCameras& scene, const Options& options);
+// Reads the cloud to use. `scene`, `options` and `context` must outlive the result.
+mesh::CloudSource source_of(const io::SceneWithCameras& scene, const Options& options,
+                            const Context& context);
 
 // Makes tile Options::tile, and writes its files into the folder <output>.tilesN.
 void make_tile(const io::SceneWithCameras& scene, const Options& options, const Context& context);

@@ -41,7 +41,7 @@ Mesh read_mesh(const Options& options, const LocalFrame& frame, bool& has_marks,
                const Context& context) {
   context.memory().require(io::bytes_to_read_mesh(options.mesh),
                            "reading " + options.mesh.string());
-  Mesh mesh = io::read_mesh_of_scene(frame, options.mesh);
+  Mesh mesh = io::read_mesh_of_scene(frame, options.mesh, context);
   naming(options.mesh, [&] { check_mesh(mesh); });
   if (mesh.faces.empty()) fail_in(options.mesh, "the mesh has no faces");
   context.info("Mesh {}: {} vertices, {} faces", options.mesh.filename().string(),
@@ -100,14 +100,15 @@ Mesh refine_mesh(Mesh mesh, const survey::Survey& survey, const Options& options
 }
 
 // Points of the cloud beside the scene, of which the mesh was made. Empty if there is no cloud.
-std::vector<Eigen::Vector3f> points_of(const survey::Survey& survey, std::size_t faces) {
+std::vector<Eigen::Vector3f> points_of(const survey::Survey& survey, std::size_t faces,
+                                       const Context& context) {
   constexpr std::size_t kPortion = 1 << 16;
   const fs::path cloud = io::cloud_beside(survey.file());
   std::error_code error;
   if (!fs::is_regular_file(cloud, error) || io::ply_has_faces(cloud)) return {};
   return mesh::some_positions(
       [&](const io::CloudPortionSink& sink) {
-        io::read_cloud_of_scene_in_portions(survey.frame, cloud, kPortion, sink);
+        io::read_cloud_of_scene_in_portions(survey.frame, cloud, kPortion, sink, context);
       },
       mesh::enough_points(faces));
 }
@@ -116,7 +117,7 @@ std::vector<Eigen::Vector3f> points_of(const survey::Survey& survey, std::size_t
 Mesh without_unseen(Mesh mesh, const survey::Survey& survey, bool keep, const Context& context) {
   mesh::UnseenOptions unseen;
   unseen.keep = keep;
-  const std::vector<Eigen::Vector3f> points = points_of(survey, mesh.faces.size());
+  const std::vector<Eigen::Vector3f> points = points_of(survey, mesh.faces.size(), context);
   unseen.points = points;
   return mesh::treat_unseen(std::move(mesh), survey::posed_cameras(survey), unseen, context);
 }
@@ -140,7 +141,7 @@ int run(int argc, char** argv) {
   Mesh mesh = read_mesh(options, survey.frame, has_marks, context);
   belong::check_surface(survey.scene, belong::shape_of(mesh), {options.mesh, survey.file()},
                         context);
-  points_of(survey, 1);  // a malformed cloud is an Error now, not after hours
+  points_of(survey, 1, context);  // a malformed cloud is an Error now, not after hours
   refine::StateOfRun state(state_file(options), context);
   mesh = refine_mesh(std::move(mesh), survey, options, state, context);
   return_freed_memory();

@@ -102,7 +102,8 @@ void take_paths(const Raw& raw, Options& options) {
   survey.compares_photographs = true;
   if (options.mesh.empty()) options.mesh = io::cloud_beside(survey.files.scene);
   options.output = io::mesh_file({survey.files.scene, options.output, raw.export_type,
-                                  given(options.parsed, "export-type"), "_refine"});
+                                  given(options.parsed, "export-type"), "_refine"},
+                                 program_context(options.parsed));
   refuse_control_characters(options.output, "--output-file");
 }
 

@@ -25,12 +25,12 @@ std::string line_of(std::uint32_t id, const lens::Lens& lens) {
 
 }  // namespace
 
-void write_effective_lenses(const Options& options) {
+void write_effective_lenses(const Options& options, const Context& context) {
   const std::filesystem::path& file = options.effective_lens;
   const std::vector<std::filesystem::path> inputs{options.lens, options.housing};
   require_not_an_input(file, inputs, "--effective-lens");
-  const std::vector<io::ColmapCamera> lenses = load_lenses(options, {});
-  const io::Housing housing = load_housing(options, {}, lenses);
+  const std::vector<io::ColmapCamera> lenses = load_lenses(options, {}, context);
+  const io::Housing housing = load_housing(options, {}, lenses, context);
   std::string text =
       "# The lenses in air behind their ports, as single lenses: a start for COLMAP\n"
       "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n";

@@ -85,46 +85,49 @@ void warn_of_other_lenses(const Options& options, const io::ColmapModel& model,
 
 }  // namespace
 
-LensesInAir load_lenses(const Options& options, const io::ColmapModel& model) {
+LensesInAir load_lenses(const Options& options, const io::ColmapModel& model,
+                        const Context& context) {
   if (options.lens.empty() && io::housing_of(model.cameras).ports.empty())
     fail("--lens is missing: the lens calibrated in air");
-  LensesInAir lenses = options.lens.empty() ? model.cameras : io::read_colmap_cameras(options.lens);
+  LensesInAir lenses =
+      options.lens.empty() ? model.cameras : io::read_colmap_cameras(options.lens, context);
   if (lenses.empty()) fail("{}: no camera", options.lens.string());
   return lenses;
 }
 
 io::Housing load_housing(const Options& options, const io::ColmapModel& model,
-                         const LensesInAir& lenses) {
+                         const LensesInAir& lenses, const Context& context) {
   if (!options.usual_housing.empty())
     return usual_housing(kind_named(options.usual_housing).value_or(pose::PortKind::flat));
   io::Housing carried = carried_housing(model, lenses);
   const std::string of_model = "the model in " + options.model.string();
   const std::string of_lens = options.lens.empty() ? of_model : options.lens.string();
   if (!options.housing.empty()) {
-    io::Housing housing = io::read_housing(options.housing, model);
+    io::Housing housing = io::read_housing(options.housing, model, context);
     io::refuse_water_surfaces(housing, options.housing);
-    io::warn_of_other_ports(housing, options.housing.string(), carried, of_lens, model);
+    io::warn_of_other_ports(housing, options.housing.string(), carried, of_lens, model, context);
     return housing;
   }
   if (carried.ports.empty()) fail("--housing is missing: the port of the camera");
-  io::warn_of_other_ports(carried, of_lens, io::housing_of(model.cameras), of_model, model);
+  io::warn_of_other_ports(carried, of_lens, io::housing_of(model.cameras), of_model, model,
+                          context);
   return carried;
 }
 
-Input read_input(const Options& options) {
+Input read_input(const Options& options, const Context& context) {
   Input input;
-  input.folder = io::find_colmap_model(options.model);
-  input.model = io::read_colmap_model(input.folder);
+  input.folder = io::find_colmap_model(options.model, context);
+  input.model = io::read_colmap_model(input.folder, context);
   // In world coordinates of millions of metres the solver would stop too early, because its steps
   // are small relative to the coordinates.
   input.frame = io::enter_local_frame(input.model);
-  input.lenses = load_lenses(options, input.model);
+  input.lenses = load_lenses(options, input.model, context);
   warn_of_other_lenses(options, input.model, input.lenses);
   if (options.poses == "known" && !options.database.empty())
     log_info("{} is not read, because the poses are known", options.database.string());
   else if (!options.database.empty())
     input.left_out = add_left_out(options.database, input.lenses, input.model);
-  input.housing = load_housing(options, input.model, input.lenses);
+  input.housing = load_housing(options, input.model, input.lenses, context);
   if (options.control.any() && !options.control.find) input.control = read_control(options.control);
   return input;
 }

@@ -48,10 +48,10 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   const Context context = program_context(options.parsed);
   if (!options.effective_lens.empty()) {
-    write_effective_lenses(options);
+    write_effective_lenses(options, context);
     return 0;
   }
-  Input input = read_input(options);
+  Input input = read_input(options, context);
   check_output(options, input);
   if (options.control.find) find_targets(options, input, context);
   const std::optional<Registered> registered = register_photographs(options, input, context);

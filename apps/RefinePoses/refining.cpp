@@ -97,7 +97,7 @@ void Refining::set_known() {
   adjust = {};
   options_.dropped_positions =
       add_known(options_.scale_from, options_.scale_sigma, options_.parsed.common.working_folder,
-                bundle(), adjust, unused_);
+                bundle(), adjust, unused_, context_);
   options_.refine.targets.clear();
   refined_.control = {};
   if (options_.control.any())
@@ -146,7 +146,8 @@ void Refining::refine_once() {
 void Refining::refine_with_or_without_scale() {
   refine_once();
   if (refined_.report.lost.empty()) return;
-  unused_.report("--scale-from " + options_.scale_from + ": " + refined_.report.lost.front());
+  unused_.report("--scale-from " + options_.scale_from + ": " + refined_.report.lost.front(),
+                 context_);
   options_.scale_from.clear();
   start_again();
   refine_once();

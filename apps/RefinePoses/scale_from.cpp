@@ -206,10 +206,10 @@ std::vector<std::string> add(const std::string& scale_from, const ScaleSigma& si
 std::vector<std::string> add_known(const std::string& scale_from, const ScaleSigma& sigma,
                                    const std::filesystem::path& working_folder,
                                    const pose::Bundle& bundle, pose::AdjustOptions& adjust,
-                                   UnusedInput& unused) {
+                                   UnusedInput& unused, const Context& context) {
   if (scale_from.empty()) return {};
   const auto report = [&](const std::string& what) {
-    unused.report((what.starts_with(kOption) ? "" : kOption) + what);
+    unused.report((what.starts_with(kOption) ? "" : kOption) + what, context);
   };
   try {
     return add(scale_from, sigma, working_folder, bundle, adjust);

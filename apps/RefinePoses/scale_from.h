@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/context.h"
 #include "base/unused_input.h"
 #include "pose/adjust_options.h"
 
@@ -45,7 +46,7 @@ inline constexpr double kGuessedPositionSigma = 0.1;
 std::vector<std::string> add_known(const std::string& scale_from, const ScaleSigma& sigma,
                                    const std::filesystem::path& working_folder,
                                    const pose::Bundle& bundle, pose::AdjustOptions& adjust,
-                                   UnusedInput& unused);
+                                   UnusedInput& unused, const Context& context);
 
 // The known lengths of `scale_from`, as add_known() adds them, without messages. Empty if there are
 // none or if they cannot be used.

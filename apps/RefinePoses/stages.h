@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/context.h"
 #include "base/unused_input.h"
 #include "control.h"
 #include "io/cameras/housing.h"
@@ -33,16 +34,17 @@ struct Input {
 };
 
 // The lenses in air: of --lens, or of the model if its cameras carry ports.
-std::vector<io::ColmapCamera> load_lenses(const Options& options, const io::ColmapModel& model);
+std::vector<io::ColmapCamera> load_lenses(const Options& options, const io::ColmapModel& model,
+                                          const Context& context);
 
 // The ports of --housing, or those that the lenses or the model carry. Warns if carried ports that
 // are not used differ.
 io::Housing load_housing(const Options& options, const io::ColmapModel& model,
-                         const std::vector<io::ColmapCamera>& lenses);
+                         const std::vector<io::ColmapCamera>& lenses, const Context& context);
 
 // Reads all input. Warns if lenses that are not used differ. The three functions throw an Error
 // that names the file or the option.
-Input read_input(const Options& options);
+Input read_input(const Options& options, const Context& context);
 
 // Called before the work: checks that the output can be written and does not replace the input.
 void check_output(const Options& options, const Input& input);

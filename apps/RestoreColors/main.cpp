@@ -26,7 +26,7 @@ namespace {
 Mesh read_mesh(const Settings& settings, const LocalFrame& frame, const Context& context) {
   context.memory().require(io::bytes_to_read_mesh(settings.mesh),
                            "reading " + settings.mesh.string());
-  Mesh mesh = io::read_mesh_of_scene(frame, settings.mesh);
+  Mesh mesh = io::read_mesh_of_scene(frame, settings.mesh, context);
   if (mesh.faces.empty()) fail_in(settings.mesh, "the mesh has no faces");
   naming(settings.mesh, [&] { check_mesh(mesh); });
   return mesh;

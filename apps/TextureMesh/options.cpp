@@ -108,14 +108,14 @@ std::vector<io::TexturedFormat> chosen_formats(const Raw& raw, const fs::path& o
 }
 
 // The name of the output, and its formats.
-void take_output(const Raw& raw, Settings& settings) {
+void take_output(const Raw& raw, Settings& settings, const Context& context) {
   const fs::path output = settings.output;
   refuse_other_format(output, "--output-file");
   settings.formats = chosen_formats(raw, output);
   const bool is_ply =
       std::ranges::find(settings.formats, io::TexturedFormat::ply) != settings.formats.end();
-  settings.output = io::mesh_beside(settings.survey.files.scene, output, "_texture", is_ply) +=
-      ".mvs";
+  settings.output =
+      io::mesh_beside(settings.survey.files.scene, output, "_texture", is_ply, context) += ".mvs";
   refuse_control_characters(settings.output, "--output-file");
 }
 
@@ -126,7 +126,7 @@ void convert(const Raw& raw, Options& options) {
               largest == 0 ? 32768 : largest);
   settings.survey.files = io::scene_files(raw.scene, raw.input, options.parsed);
   if (settings.mesh.empty()) settings.mesh = io::cloud_beside(settings.survey.files.scene);
-  take_output(raw, settings);
+  take_output(raw, settings, program_context(options.parsed));
   boundary::check(options.parsed, settings.boundary);
   survey::take_masks(options.parsed, settings.survey);
   settings.survey.compares_photographs = true;

@@ -20,22 +20,23 @@ io::TexturedFormat format_of(const fs::path& file) {
 
 }  // namespace
 
-ConvertedMesh converted_mesh(const fs::path& input, const fs::path& output) {
+ConvertedMesh converted_mesh(const fs::path& input, const fs::path& output,
+                             const Context& context) {
   ConvertedMesh mesh{input, {output}, {}};
   if (!io::is_textured_mesh(input)) {
     if (format_of(output) == io::TexturedFormat::gltf)
       fail_in(input, "has no textures, and is not written as gltf: choose ply, obj or glb");
     return mesh;
   }
-  mesh.look = io::read_textured_mesh(input);
+  mesh.look = io::read_textured_mesh(input, {}, context);
   mesh.look.mesh = {};  // its positions are read again in the frame of the scene
   mesh.outputs = io::textured_files(output, format_of(output), mesh.look.textures.size());
   return mesh;
 }
 
 void write_moved(const ConvertedMesh& mesh, const FrameMove& move,
-                 std::span<const fs::path> temporaries) {
-  Mesh moved = io::read_mesh_of_scene(move.from, mesh.input);
+                 std::span<const fs::path> temporaries, const Context& context) {
+  Mesh moved = io::read_mesh_of_scene(move.from, mesh.input, context);
   evaluate::apply(move.similarity, moved);
   for (std::size_t i = 0; i < moved.vertices.size(); ++i)
     if (!moved.vertices[i].allFinite())

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "axial/scene_images.h"
+#include "base/context.h"
 #include "scene/moved_scene.h"
 
 namespace axial::apps {
@@ -23,11 +24,11 @@ struct ConvertedMesh {
 // files beside it. Writes nothing. Errors as for io::read_textured_mesh(). In addition, an Error if
 // a mesh without textures shall become a .gltf.
 ConvertedMesh converted_mesh(const std::filesystem::path& input,
-                             const std::filesystem::path& output);
+                             const std::filesystem::path& output, const Context& context);
 
 // Moves the mesh and writes it under the names `temporaries`, one for each of `outputs`. Positions
 // are written in `move.to`. Normals are left out. Errors as for io::read_mesh_of_scene().
 void write_moved(const ConvertedMesh& mesh, const FrameMove& move,
-                 std::span<const std::filesystem::path> temporaries);
+                 std::span<const std::filesystem::path> temporaries, const Context& context);
 
 }  // namespace axial::apps

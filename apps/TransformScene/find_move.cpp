@@ -33,9 +33,10 @@ void warn_of_outliers(const fs::path& file, const evaluate::SceneAlignment& alig
   for (const std::string& line : alignment.outliers) log_warning("{}: {}", file.string(), line);
 }
 
-FrameMove align_to_scene(const Options& options, const io::SceneWithCameras& scene) {
-  Scene reference = io::read_mvs(options.align, options.survey.files.working_folder);
-  const LocalFrame frame = io::enter_local_frame(reference, options.align);
+FrameMove align_to_scene(const Options& options, const io::SceneWithCameras& scene,
+                         const Context& context) {
+  Scene reference = io::read_mvs(options.align, options.survey.files.working_folder, context);
+  const LocalFrame frame = io::enter_local_frame(reference, options.align, context);
   return naming(options.align, [&] {
     const evaluate::ImagePairs images = evaluate::pair_images(scene.scene, reference);
     const auto alignment = evaluate::align_scenes(scene.scene, reference, images, !options.rigid);
@@ -104,11 +105,12 @@ LocalFrame frame_after(const FrameMove& move, const Scene& scene) {
 
 }  // namespace
 
-FrameMove find_move(const Options& options, const io::SceneWithCameras& scene) {
+FrameMove find_move(const Options& options, const io::SceneWithCameras& scene,
+                    const Context& context) {
   if (!options.moves()) return {{}, scene.frame, scene.frame};
   FrameMove move;
   if (!options.align.empty())
-    move = align_to_scene(options, scene);
+    move = align_to_scene(options, scene, context);
   else if (!options.positions.empty())
     move = align_to_known(options, scene);
   else

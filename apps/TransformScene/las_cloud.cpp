@@ -35,7 +35,8 @@ void write_as_las(const Options& options, const Context& context) {
   const OutputLock lock = lock_output(options.output);
   require_writable(options.output);
   const LocalFrame frame = io::read_geo_offset_beside(options.input).value_or(LocalFrame{});
-  if (io::is_without_offset(frame, options.input)) io::tell_lost_offset(options.input, frame);
+  if (io::is_without_offset(frame, options.input))
+    io::tell_lost_offset(options.input, frame, context);
   const io::LasReport report =
       io::write_cloud_as_las(options.input, options.output, frame, crs, context);
   tell(options, report);

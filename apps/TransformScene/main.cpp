@@ -83,13 +83,13 @@ struct Files {
   std::optional<ConvertedMesh> mesh;  // if it is not a PLY, or is written in another format
 };
 
-Files files_of(const Options& options) {
+Files files_of(const Options& options, const Context& context) {
   Files files{moved_plys(options), {}, {}};
   if (!options.writes_mesh()) return files;
   if (is_moved_as_ply(options))
     files.textures = texture_copies(options.mesh, mesh_output(options));
   else
-    files.mesh = converted_mesh(options.mesh, mesh_output(options));
+    files.mesh = converted_mesh(options.mesh, mesh_output(options), context);
   return files;
 }
 
@@ -147,12 +147,14 @@ void warn_of_foreign_points(const Options& options, const io::SceneWithCameras& 
   std::vector<Eigen::Vector3f> points;
   std::size_t read = 0;
   try {
-    io::read_cloud_of_scene_in_portions(scene.frame, ply, kPortion,
-                                        [&](const PointCloud& portion, std::size_t all) {
-                                          const std::size_t step = all / kMost + 1;
-                                          for (const Eigen::Vector3f& position : portion.positions)
-                                            if (read++ % step == 0) points.push_back(position);
-                                        });
+    io::read_cloud_of_scene_in_portions(
+        scene.frame, ply, kPortion,
+        [&](const PointCloud& portion, std::size_t all) {
+          const std::size_t step = all / kMost + 1;
+          for (const Eigen::Vector3f& position : portion.positions)
+            if (read++ % step == 0) points.push_back(position);
+        },
+        context);
   } catch (const Error&) {
     return;
   }
@@ -193,7 +195,7 @@ struct Output {
 // The last output is the scene, if it is written. It needs the files beside it and the smaller
 // images.
 std::vector<Output> all_outputs(const Options& options, const Files& files, const FrameMove& move,
-                                const Scene& scene) {
+                                const Scene& scene, const Context& context) {
   std::vector<Output> outputs;
   if (files.mesh)  // these files come first
     for (const fs::path& file : files.mesh->outputs) outputs.push_back({file, {}});
@@ -208,8 +210,8 @@ std::vector<Output> all_outputs(const Options& options, const Files& files, cons
                          write_atomically(file, evaluate::matrix_text(move.between_worlds()));
                        }});
   if (options.sample_mesh != 0)
-    outputs.push_back(
-        {samples_file(options), [&](const fs::path& file) { write_samples(options, move, file); }});
+    outputs.push_back({samples_file(options),
+                       [&](const fs::path& file) { write_samples(options, move, file, context); }});
   if (options.writes_scene())
     outputs.push_back({options.output, [&](const fs::path& file) {
                          io::write_mvs(file, scene, options.survey.files.working_folder);
@@ -234,19 +236,20 @@ void tell_outputs(const Options& options, const Files& files, const std::vector<
 // No file changes before all inputs are read. The files beside the scene are written before the
 // scene: without them the scene would be read as a scene without ports at the origin.
 void write_all(const Options& options, const Files& files, const FrameMove& move,
-               const std::vector<SmallImage>& images, const io::SceneWithCameras& scene) {
+               const std::vector<SmallImage>& images, const io::SceneWithCameras& scene,
+               const Context& context) {
   const io::SceneLenses lenses =
       options.writes_scene() ? io::lenses_of(scene.scene, options.output) : io::SceneLenses();
-  const std::vector<Output> outputs = all_outputs(options, files, move, scene.scene);
+  const std::vector<Output> outputs = all_outputs(options, files, move, scene.scene, context);
   std::vector<fs::path> paths;
   for (const Output& output : outputs) paths.push_back(output.path);
   write_together(paths, [&](const std::vector<fs::path>& temporaries) {
-    if (files.mesh) write_moved(*files.mesh, move, temporaries);
+    if (files.mesh) write_moved(*files.mesh, move, temporaries, context);
     for (std::size_t k = 0; k < outputs.size(); ++k)
       if (outputs[k].write) outputs[k].write(temporaries[k]);
     if (!options.writes_scene()) return;
     write_small_images(images, folder_of_small_images(options));
-    io::write_cameras_beside(options.output, scene, lenses, options.survey.files);
+    io::write_cameras_beside(options.output, scene, lenses, options.survey.files, context);
   });
   tell_outputs(options, files, images, scene.scene);
 }
@@ -277,7 +280,7 @@ int run(int argc, char** argv) {
     write_as_las(options, context);
     return 0;
   }
-  const Files files = files_of(options);
+  const Files files = files_of(options, context);
   std::optional<OutputLock> lock;
   const bool writes = !outputs_of(options, files).empty();
   if (writes) lock.emplace(options.output, LockUse::alone, ParentFolder::made);
@@ -286,16 +289,16 @@ int run(int argc, char** argv) {
   keep_images(options, files, survey);
   for (const MovedPly& ply : files.plys)
     warn_of_foreign_points(options, survey, ply.input, context);
-  const FrameMove move = find_move(options, survey);
+  const FrameMove move = find_move(options, survey, context);
   check_scale(options, survey, move.similarity);
   apply(options, move, survey);
   if (options.writes_scene()) require_writable_scene(options, survey.scene);
-  if (options.compute_volume) measure_volume(options, survey.scene, move);
+  if (options.compute_volume) measure_volume(options, survey.scene, move, context);
   std::vector<SmallImage> images;
   if (options.max_resolution > 0)
     images =
         find_large_images(options.max_resolution, folder_of_small_images(options), survey.scene);
-  if (writes) write_all(options, files, move, images, survey);
+  if (writes) write_all(options, files, move, images, survey, context);
   warn_of_older_files(options, files);
   return 0;
 }

@@ -27,8 +27,9 @@ Eigen::Vector3d middle_of_cameras(const Scene& scene) {
   return middle;
 }
 
-void measure(const Options& options, const Scene& scene, const FrameMove& move) {
-  const Mesh mesh = moved_mesh(options, move);
+void measure(const Options& options, const Scene& scene, const FrameMove& move,
+             const Context& context) {
+  const Mesh mesh = moved_mesh(options, move, context);
   const evaluate::Topology topology = evaluate::topology_of(mesh);
   const bool closed = topology.border_edges == 0 && topology.non_manifold_edges == 0;
   if (options.plane_threshold < 0 && !closed)
@@ -52,8 +53,9 @@ void measure(const Options& options, const Scene& scene, const FrameMove& move) 
 
 }  // namespace
 
-void measure_volume(const Options& options, const Scene& scene, const FrameMove& move) {
-  naming(options.mesh, [&] { measure(options, scene, move); });
+void measure_volume(const Options& options, const Scene& scene, const FrameMove& move,
+                    const Context& context) {
+  naming(options.mesh, [&] { measure(options, scene, move, context); });
 }
 
 }  // namespace axial::apps

@@ -40,8 +40,8 @@ std::size_t count_of_samples(const Options& options, const Mesh& mesh) {
 
 }  // namespace
 
-Mesh moved_mesh(const Options& options, const FrameMove& move) {
-  Mesh mesh = io::read_mesh_of_scene(move.from, options.mesh);
+Mesh moved_mesh(const Options& options, const FrameMove& move, const Context& context) {
+  Mesh mesh = io::read_mesh_of_scene(move.from, options.mesh, context);
   if (mesh.faces.empty()) fail_in(options.mesh, "the mesh has no faces");
   evaluate::apply(move.similarity, mesh);
   return mesh;
@@ -51,8 +51,9 @@ fs::path samples_file(const Options& options) {
   return without_known_extension(options.output) += "_samples.ply";
 }
 
-void write_samples(const Options& options, const FrameMove& move, const fs::path& file) {
-  const Mesh mesh = moved_mesh(options, move);
+void write_samples(const Options& options, const FrameMove& move, const fs::path& file,
+                   const Context& context) {
+  const Mesh mesh = moved_mesh(options, move, context);
   PointCloud cloud;
   cloud.positions = geometry::sample_surface(mesh, count_of_samples(options, mesh), kSeed);
   io::write_cloud_ply(file, cloud, false, {move.to});

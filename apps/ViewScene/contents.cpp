@@ -58,7 +58,7 @@ void read_cloud(const Options& options, Contents& contents, const Context& conte
   constexpr std::size_t kPortion = 1 << 18;
   io::read_cloud_of_scene_in_portions(
       contents.survey.frame, options.cloud, kPortion,
-      [&](const PointCloud& portion, std::size_t all) { sample.add(portion, all); });
+      [&](const PointCloud& portion, std::size_t all) { sample.add(portion, all); }, context);
   contents.all_points = sample.added();
   contents.cloud = sample.take();
   if (contents.cloud.size() == 0) fail_in(options.cloud, "the cloud has no points");
@@ -90,10 +90,10 @@ void read_mesh(const Options& options, Contents& contents, const Context& contex
   const LocalFrame& frame = contents.survey.frame;
   std::size_t faces = 0;
   if (io::is_textured_mesh(options.mesh)) {
-    contents.textured = io::read_textured_mesh_of_scene(frame, options.mesh);
+    contents.textured = io::read_textured_mesh_of_scene(frame, options.mesh, context);
     faces = contents.textured->mesh.faces.size();
   } else {
-    contents.mesh = io::read_mesh_of_scene(frame, options.mesh);
+    contents.mesh = io::read_mesh_of_scene(frame, options.mesh, context);
     faces = contents.mesh->faces.size();
   }
   if (faces == 0) fail_in(options.mesh, "the mesh has no faces");
@@ -213,7 +213,7 @@ void add_survey(const Contents& contents, const Options& options, const fs::path
                 Json& data, const Context& context) {
   if (!options.run.empty()) data["run"] = run_report(options.run);
   if (Json maps = write_maps(options.maps, staging); !maps.is_null()) data["map"] = std::move(maps);
-  Json depths = write_depth_maps(contents.survey.scene, options.depth_maps, staging);
+  Json depths = write_depth_maps(contents.survey.scene, options.depth_maps, staging, context);
   if (!depths.empty()) data["depth_maps"] = std::move(depths);
   if (!options.survey.color_folder.empty())
     data["colors"] = restored_colors(contents.survey, staging, context);
@@ -236,7 +236,8 @@ Contents read_contents(const Options& options, const Context& context) {
   read_mesh(options, contents, context);
   check_sides(options, contents, context);
   if (!options.truth.empty())
-    contents.distances = distances_to_truth(contents.survey.frame, contents.cloud, options.truth);
+    contents.distances =
+        distances_to_truth(contents.survey.frame, contents.cloud, options.truth, context);
   return contents;
 }
 
@@ -257,7 +258,8 @@ void write_contents(const Contents& contents, const Options& options, const fs::
                   {"towards", list(first.towards)},
                   {"up", list(first.up)}};
   add_survey(contents, options, staging, data, context);
-  if (!options.sfm_model.empty()) data["residuals"] = residual_data(scene, options.sfm_model);
+  if (!options.sfm_model.empty())
+    data["residuals"] = residual_data(scene, options.sfm_model, context);
   if (!contents.distances.empty()) data["truth"] = options.truth.filename().string();
   data["cameras"] = write_cameras(contents, staging, context);
   data["chunks"] = write_cloud(contents, options, staging);

@@ -82,9 +82,9 @@ class DepthPictures {
 
 // `number`: of the camera on the page.
 Json write_depth_map(const SceneImage& image, std::size_t number, const DepthMapOptions& options,
-                     const fs::path& staging) {
+                     const fs::path& staging, const Context& context) {
   const fs::path file = map_of(image, options.folder);
-  const DepthMap map = io::read_dmap(file).map;
+  const DepthMap map = io::read_dmap(file, io::DmapSide::used, context).map;
   check_photograph(map, image, file);
   const cv::Size size = working_size(map.width(), map.height(), {0, 1, options.longest_side});
   const DepthPictures pictures(staging, fmt::format("depth/{:05}", number), size);
@@ -111,7 +111,8 @@ std::size_t maps_at_once(const std::vector<const SceneImage*>& images) {
 
 }  // namespace
 
-Json write_depth_maps(const Scene& scene, const DepthMapOptions& options, const fs::path& staging) {
+Json write_depth_maps(const Scene& scene, const DepthMapOptions& options, const fs::path& staging,
+                      const Context& context) {
   std::vector<const SceneImage*> images;
   for (const SceneImage& image : scene.images)
     if (image.calibrated) images.push_back(&image);
@@ -130,7 +131,7 @@ Json write_depth_maps(const Scene& scene, const DepthMapOptions& options, const 
   for_each_in_flight(images.size(), maps_at_once(images), [&](std::size_t i) {
     if (!has_map(images[i])) return;
     try {
-      entries[i] = write_depth_map(*images[i], i, options, staging);
+      entries[i] = write_depth_map(*images[i], i, options, staging, context);
     } catch (const Error& error) {
       if (options.is_given) throw;
       log_warning("a depth map is left out: {}", error.text());

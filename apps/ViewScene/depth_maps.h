@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 
+#include "base/context.h"
 #include "scene/scene.h"
 
 namespace axial::apps {
@@ -26,6 +27,7 @@ struct DepthMapOptions {
 // and Error if there is no depth map in a folder that the user named. If the user did not name the
 // folder, these are warnings, and such maps are left out.
 nlohmann::ordered_json write_depth_maps(const Scene& scene, const DepthMapOptions& options,
-                                        const std::filesystem::path& staging);
+                                        const std::filesystem::path& staging,
+                                        const Context& context);
 
 }  // namespace axial::apps

@@ -157,8 +157,9 @@ void add_causes(const diagnosis::TrackedPhotographs& photographs, const Vectors&
 
 }  // namespace
 
-Data residual_data(const io::SceneWithCameras& scene, const std::filesystem::path& folder) {
-  const TrackedScene tracked = read_tracks(scene, folder);
+Data residual_data(const io::SceneWithCameras& scene, const std::filesystem::path& folder,
+                   const Context& context) {
+  const TrackedScene tracked = read_tracks(scene, folder, context);
   const diagnosis::TrackedPhotographs& photographs = tracked.photographs;
   const diagnosis::ResidualVectors vectors = diagnosis::residual_vectors(photographs);
   std::vector<Errors> by_camera(photographs.cameras.size()), by_image(photographs.images.size());

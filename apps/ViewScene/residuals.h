@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 
+#include "base/context.h"
 #include "io/openmvs/scene_with_cameras.h"
 
 namespace axial::apps {
@@ -20,6 +21,6 @@ namespace axial::apps {
 // A cell of a grid is a list: count, mean x, mean y, standard error, RMS [px].
 // Errors as for read_tracks().
 nlohmann::ordered_json residual_data(const io::SceneWithCameras& scene,
-                                     const std::filesystem::path& folder);
+                                     const std::filesystem::path& folder, const Context& context);
 
 }  // namespace axial::apps

@@ -177,8 +177,10 @@ TrackedScene tracks_of(const io::SceneWithCameras& scene, const io::ColmapModel&
 
 }  // namespace
 
-TrackedScene read_tracks(const io::SceneWithCameras& scene, const fs::path& folder) {
-  const io::ColmapModel model = io::read_colmap_model(io::find_colmap_model(folder));
+TrackedScene read_tracks(const io::SceneWithCameras& scene, const fs::path& folder,
+                         const Context& context) {
+  const io::ColmapModel model =
+      io::read_colmap_model(io::find_colmap_model(folder, context), context);
   TrackedScene tracked =
       naming("--sfm-model " + folder.string(), [&] { return tracks_of(scene, model); });
   log_info("{}: {} observations in {} of {} images", folder.string(),

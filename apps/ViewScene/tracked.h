@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "base/context.h"
 #include "diagnosis/residuals.h"
 #include "io/openmvs/scene_with_cameras.h"
 
@@ -22,6 +23,7 @@ struct TrackedScene {
 // model with distorted lenses are converted for images of the scene that were undistorted. Error
 // that names `folder` for a malformed model, no common image, several images of one name, another
 // image size, and a pose that differs from that in the scene.
-TrackedScene read_tracks(const io::SceneWithCameras& scene, const std::filesystem::path& folder);
+TrackedScene read_tracks(const io::SceneWithCameras& scene, const std::filesystem::path& folder,
+                         const Context& context);
 
 }  // namespace axial::apps

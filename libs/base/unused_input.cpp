@@ -11,9 +11,9 @@ void UnusedInput::declare(OptionList& list, bool& allowed) {
                   "continue with a warning if a given input cannot be used");
 }
 
-void UnusedInput::report(const std::string& line) {
+void UnusedInput::report(const std::string& line, const Context& context) {
   if (!allowed_) fail("{} ({} continues without it)", line, setting("allow_missing"));
-  log_warning("{}; it is not used", line);
+  context.warning("{}; it is not used", line);
   lines_.push_back(log_words(line));
 }
 

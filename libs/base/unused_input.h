@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "axial/base.h"
 #include "base/option_list.h"
 
 namespace axial {
@@ -20,10 +21,10 @@ class UnusedInput {
   explicit UnusedInput(bool allowed) : allowed_(allowed) {}
 
   // Reports one unused input. `line` names the setting, the input and the reason. If unused input
-  // is allowed, logs a warning that begins with `line`, and keeps `line` for lines(). Otherwise
-  // throws an Error whose message begins with `line` and names the setting that allows unused
-  // input.
-  void report(const std::string& line);
+  // is allowed, warns through `context`, in a line that begins with `line`, and keeps `line` for
+  // lines(). Otherwise throws an Error whose message begins with `line` and names the setting that
+  // allows unused input.
+  void report(const std::string& line, const Context& context);
 
   // The lines that were reported as warnings, as the log has them, in the order of the reports.
   const std::vector<std::string>& lines() const { return lines_; }

@@ -55,13 +55,13 @@ std::vector<fs::path> photographs_in(std::span<const fs::path> input) {
 }
 
 std::vector<View> find_views(std::span<const fs::path> photographs, const Board& board,
-                             const io::ColmapCamera& lens, int bit_depth) {
+                             const io::ColmapCamera& lens, int bit_depth, const Context& context) {
   std::vector<io::ImageHeader> headers(photographs.size());
   for_each_photograph(photographs, [&](std::size_t i) {
     headers[i] = io::read_image_header(photographs[i]);
     check_size(photographs[i], headers[i].size, lens);
   });
-  const int bits = io::common_bit_depth(photographs, headers, bit_depth);
+  const int bits = io::common_bit_depth(photographs, headers, bit_depth, context);
   std::vector<View> views(photographs.size());
   for_each_photograph(photographs, [&](std::size_t i) {
     views[i] =

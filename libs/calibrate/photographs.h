@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "axial/base.h"
 #include "calibrate/board.h"
 #include "calibrate/board_bundle.h"
 
@@ -26,8 +27,9 @@ std::vector<std::filesystem::path> photographs_in(std::span<const std::filesyste
 // names a photograph that cannot be read or differs in size from `lens`. If there are several such
 // photographs, it is the same one for any number of threads. `bit_depth`: the number of bits, from
 // 8 to 16, that the values of 16-bit photographs use. 0: as many bits as the largest value in all
-// photographs needs, but at least 8 (io::common_bit_depth).
+// photographs needs, but at least 8 (io::common_bit_depth, whose lines `context` gets).
 std::vector<View> find_views(std::span<const std::filesystem::path> photographs, const Board& board,
-                             const io::ColmapCamera& lens, int bit_depth = 0);
+                             const io::ColmapCamera& lens, int bit_depth = 0,
+                             const Context& context = {});
 
 }  // namespace axial::calibrate

@@ -60,7 +60,7 @@ WrittenCloud write(const PointExport& to, const std::string& suffix, bool with_s
   const fs::path scene = with_scene ? to.file(suffix + ".mvs") : fs::path();
   io::write_cloud_ply(ply, cloud_of(project.scene), true, to.placement());
   if (with_scene) {
-    io::write_cameras_beside(scene, project, project.lenses, project.options.files);
+    io::write_cameras_beside(scene, project, project.lenses, project.options.files, to.context);
     io::write_mvs(scene, project.scene, project.options.files.working_folder);
   }
   return told(to, ply);

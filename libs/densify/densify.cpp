@@ -48,7 +48,7 @@ Project load_with_fingerprint(const Options& options, const SceneObserver& obser
 
 ExistingMaps checked_maps(Project& project, const MatchOptions& options, bool for_tile,
                           const Context& context) {
-  ExistingMaps existing = find_existing_maps(project, options.make_maps);
+  ExistingMaps existing = find_existing_maps(project, options.make_maps, context);
   if (!options.make_maps)
     keep_images_with_maps(project, existing, context);
   else if (for_tile)
@@ -129,7 +129,7 @@ struct MapRun {
       return make_depth_maps({project, existing, plan, images, context}, options.matching, job,
                              report);
     const auto read_map = [&](std::size_t image) {
-      return read_final_map(project, existing, image, images.mask(image));
+      return read_final_map(project, existing, image, images.mask(image), context);
     };
     check_agreement(project, plan, false, read_map, report, context);
   }
@@ -144,9 +144,9 @@ struct JobRun {
 
   Report operator()(const ExportJob& job) const {
     const fs::path& points = options.views.point_cloud;
-    const WrittenCloud cloud = export_cloud(
-        load_scene(options.survey, points, options.output.scene, true, context.memory()), job,
-        options.output, files.inputs, context);
+    const WrittenCloud cloud =
+        export_cloud(load_scene(options.survey, points, options.output.scene, true, context), job,
+                     options.output, files.inputs, context);
     return {Result::point_export, cloud.file, cloud.points};
   }
 
@@ -222,7 +222,7 @@ struct JobRun {
     if (!options.output.take_map) return;
     for (const std::size_t image : run.project.references) {
       const cv::Mat1b mask = run.existing.are_final ? images.mask(image) : cv::Mat1b();
-      DepthMap map = read_final_map(run.project, run.existing, image, mask);
+      DepthMap map = read_final_map(run.project, run.existing, image, mask, context);
       map.image_path = run.project.scene.images[image].path;
       options.output.take_map(image, std::move(map));
     }
@@ -231,7 +231,7 @@ struct JobRun {
   void write_scene(const Project& project) const {
     return_freed_memory();  // the images' memory is needed to write the scene
     const io::SceneFiles& from = options.survey.files;
-    io::write_cameras_beside(options.output.scene, project, project.lenses, from);
+    io::write_cameras_beside(options.output.scene, project, project.lenses, from, context);
     io::write_mvs(options.output.scene, project.scene, from.working_folder);
   }
 };

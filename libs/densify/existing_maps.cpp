@@ -49,7 +49,8 @@ double largest_shift(const DepthMap& map, const CameraModel& model, const Pose& 
 }
 
 // The image's camera at the resolution of its map. Error unless the map belongs to this camera.
-CameraModel camera_of_map(const Project& project, std::size_t image, DmapOrigin origin) {
+CameraModel camera_of_map(const Project& project, std::size_t image, DmapOrigin origin,
+                          const Context& context) {
   const std::string file = depth_map_path(project, image).string();
   const SceneImage& scene_image = project.scene.images[image];
   if (origin == DmapOrigin::damaged)
@@ -60,7 +61,7 @@ CameraModel camera_of_map(const Project& project, std::size_t image, DmapOrigin 
     fail_in(file,
             "is the depth map of a pinhole camera, but image {} has a port or a distorted lens",
             scene_image.path);
-  const DepthMap map = io::read_dmap_header(file, side_to_read(origin));
+  const DepthMap map = io::read_dmap_header(file, side_to_read(origin), context);
   const cv::Size size(map.camera.width, map.camera.height);
   if (!same_shape(size, {scene_image.camera.width, scene_image.camera.height}))
     fail_in(file, "is {}x{}, but the camera of image {} is {}x{}", size.width, size.height,
@@ -85,18 +86,18 @@ void leave_out(const cv::Mat1b& mask, DepthMap& map) {
 
 }  // namespace
 
-ExistingMaps find_existing_maps(const Project& project, bool make_maps) {
+ExistingMaps find_existing_maps(const Project& project, bool make_maps, const Context& context) {
   ExistingMaps maps{std::vector<io::DmapStatus>(project.scene.images.size()), !make_maps};
   // One map at a time: each is read completely, and the memory plan does not exist yet.
   for (const std::size_t image : project.part)
-    maps.states[image] = io::dmap_status(depth_map_path(project, image));
+    maps.states[image] = io::dmap_status(depth_map_path(project, image), context);
   return maps;
 }
 
 DepthMap read_final_map(const Project& project, const ExistingMaps& maps, std::size_t image,
-                        const cv::Mat1b& mask) {
+                        const cv::Mat1b& mask, const Context& context) {
   const auto side = maps.are_final ? side_to_read(maps.states[image].origin) : io::DmapSide::used;
-  DepthMap map = io::read_dmap(depth_map_path(project, image), side).map;
+  DepthMap map = io::read_dmap(depth_map_path(project, image), side, context).map;
   if (maps.are_final && !mask.empty()) leave_out(mask, map);
   if (cv::countNonZero(map.normal.reshape(1)) == 0) map.normal.release();
   return map;
@@ -170,7 +171,7 @@ void keep_images_with_maps(Project& project, const ExistingMaps& maps, const Con
       if (missing.empty()) missing = depth_map_path(project, image);
       continue;
     }
-    project.views[image].camera = camera_of_map(project, image, origin);
+    project.views[image].camera = camera_of_map(project, image, origin, context);
     foreign += origin == DmapOrigin::foreign ? 1 : 0;
     kept.push_back(image);
   }

@@ -19,16 +19,17 @@ struct ExistingMaps {
 };
 
 // Reads the map files of the images Project::part, one after the other. Other images have
-// DmapOrigin::none.
-ExistingMaps find_existing_maps(const Project& project, bool make_maps);
+// DmapOrigin::none. Warnings as for io::dmap_status().
+ExistingMaps find_existing_maps(const Project& project, bool make_maps,
+                                const Context& context = {});
 
 // Reads the final map of the image with the index `image`. If all normals of the map are 0,
 // DepthMap::normal is empty. `mask`: empty (no mask), or of the map's size. In a run that makes no
 // maps, depth, normal and confidence are set to 0 where `mask` is zero. In a run that makes maps,
 // `mask` is not used, because these maps are masked already. The file is not changed. Throws an
-// Error if the file cannot be read.
+// Error if the file cannot be read. Warnings as for io::read_dmap().
 DepthMap read_final_map(const Project& project, const ExistingMaps& maps, std::size_t image,
-                        const cv::Mat1b& mask);
+                        const cv::Mat1b& mask, const Context& context);
 
 // The text `made_from` (io/openmvs/dmap.h) of the final depth maps that a run with these options
 // makes.

@@ -54,7 +54,7 @@ struct FusionRun : Run {
 // Reads the final map of an image. A map without normals stays so: fusion estimates them.
 DepthMap load_final_map(const FusionRun& run, std::size_t image) {
   const cv::Mat1b mask = run.existing.are_final ? run.images.mask(image) : cv::Mat1b();
-  return read_final_map(run.project, run.existing, image, mask);
+  return read_final_map(run.project, run.existing, image, mask, run.context);
 }
 
 cloud::FusionProviders providers_of(const FusionRun& run) {

@@ -79,20 +79,19 @@ void select_views(Project& project, const ViewOptions& options, const SceneObser
 }  // namespace
 
 Project load_scene(const survey::Options& survey, const std::filesystem::path& point_cloud,
-                   const std::filesystem::path& output, bool for_export,
-                   const MemoryBudget& memory) {
-  require_memory_to_read(survey, point_cloud, for_export, memory);  // more than the scene
+                   const std::filesystem::path& output, bool for_export, const Context& context) {
+  require_memory_to_read(survey, point_cloud, for_export, context.memory());  // more than the scene
   Project project;
-  static_cast<survey::Survey&>(project) = survey::open_scene(survey);
+  static_cast<survey::Survey&>(project) = survey::open_scene(survey, context);
   project.lenses = io::lenses_of(project.scene, output);
-  if (!point_cloud.empty()) io::use_point_cloud(project.scene, project.frame, point_cloud);
+  if (!point_cloud.empty()) io::use_point_cloud(project.scene, project.frame, point_cloud, context);
   return project;
 }
 
 Project load_project(const survey::Options& survey, const ViewOptions& options,
                      const std::filesystem::path& output, const SceneObserver& observer,
                      const Context& context) {
-  Project project = load_scene(survey, options.point_cloud, output, false, context.memory());
+  Project project = load_scene(survey, options.point_cloud, output, false, context);
   find_views(project, context);
   check_ids(project);
   select_views(project, options, observer, context);

@@ -9,10 +9,10 @@ namespace axial::densify {
 // Loads the scene with its ports, and the points of the file `point_cloud` unless the path is
 // empty. Fills the members of the scene, and `lenses`, which will be written beside the scene
 // `output`. `for_export`: the points are only exported. Reads no image files. Throws an Error for
-// any fault of the files that are read, and for too little memory to read them.
+// any fault of the files that are read, and for too little memory to read them. `context` gets the
+// lines of the readers.
 Project load_scene(const survey::Options& survey, const std::filesystem::path& point_cloud,
-                   const std::filesystem::path& output, bool for_export,
-                   const MemoryBudget& memory);
+                   const std::filesystem::path& output, bool for_export, const Context& context);
 
 // Loads the scene, finds its images and masks, and selects views. Fills all members besides `part`
 // and `fingerprint`. Of image files, the headers are kept. `observer`, unless it is empty, is

@@ -77,7 +77,7 @@ class Runner {
   // Whether the file existed before this run: a stage asks before it writes.
   bool finished(std::size_t stage, std::size_t image) const {
     const io::DmapStatus status =
-        is_last(stage) ? run_.existing[image] : io::dmap_status(path(stage, image));
+        is_last(stage) ? run_.existing[image] : io::dmap_status(path(stage, image), context_);
     return status.is_ours_from(made_from(stage));
   }
 
@@ -85,7 +85,7 @@ class Runner {
   bool is_superseded(std::size_t stage) const {
     for (std::size_t later = stage + 1; later < stages_.size(); ++later) {
       const auto there = [&](std::size_t image) {
-        return io::dmap_status(path(later, image)).is_ours_from(made_from(later));
+        return io::dmap_status(path(later, image), context_).is_ours_from(made_from(later));
       };
       if (run_.all_images.empty() || !std::ranges::all_of(run_.all_images, there)) continue;
       context_.info("All {} depth maps exist already, of the later stage {}",
@@ -135,7 +135,9 @@ class Runner {
   }
 
   ReadMap reader(std::size_t stage) const {
-    return [this, stage](std::size_t image) { return io::read_dmap(path(stage, image)).map; };
+    return [this, stage](std::size_t image) {
+      return io::read_dmap(path(stage, image), io::DmapSide::used, context_).map;
+    };
   }
 
   PreviousMaps previous_of(std::size_t stage) const {
@@ -171,7 +173,7 @@ class Runner {
   void draw(std::size_t stage) const {
     for_each_in_flight(run_.images.size(), run_.in_flight, [&](std::size_t i) {
       const fs::path file = path(stage, run_.images[i]);
-      picture::write_dmap_pictures(file, io::read_dmap(file).map);
+      picture::write_dmap_pictures(file, io::read_dmap(file, io::DmapSide::used, context_).map);
     });
   }
 

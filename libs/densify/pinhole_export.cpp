@@ -85,7 +85,7 @@ class Export {
     if (maps_.are_final)
       mask =
           survey::working_mask(project_.views[image], opaque, project_.options.ignore_mask_label);
-    return read_final_map(project_, maps_, image, mask);
+    return read_final_map(project_, maps_, image, mask, context_);
   }
 
   // The mask of a photograph in its full size; empty: none. `camera`: of this size.
@@ -223,7 +223,7 @@ class Export {
       std::erase_if(point.views, [&](const SparseView& view) { return !is_exported_[view.image]; });
     keep_points(exported, [&](std::size_t i) { return !exported.points[i].views.empty(); });
     io::write_mvs(folder_ / "scene.mvs", exported, folder_);
-    io::write_geo_offset_beside(folder_ / "scene.mvs", project_.frame);
+    io::write_geo_offset_beside(folder_ / "scene.mvs", project_.frame, context_);
   }
 
   void export_marker() const {

@@ -4,7 +4,6 @@
 #include <map>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "diagnosis/port_check.h"
 #include "diagnosis/track_pictures.h"
 #include "diagnosis/track_sample.h"
@@ -57,13 +56,14 @@ std::vector<double> claimed_errors(const io::ColmapModel& sample) {
 // The change with which the photographs agree clearly better than with the given cameras; the first
 // of several.
 std::optional<ChangeByPictures> change_by_pictures(const TrackPictures& pictures,
-                                                   const pose::Bundle& bundle, double given) {
+                                                   const pose::Bundle& bundle, double given,
+                                                   const Context& context) {
   std::optional<ChangeByPictures> best;
   for (const PortChange& change : likely_changes(bundle)) {
     if (change.of == PortChange::Of::port_left_out || change.of == PortChange::Of::focal_in_air)
       continue;
     const auto value = pictures.behind(changed(bundle, change));
-    if (value) log_details("Photographs: {:.2f} with {}", *value, change.cause);
+    if (value) context.details("Photographs: {:.2f} with {}", *value, change.cause);
     if (value && *value > kAgreeWithChange && *value > given + kClearlyMore &&
         (!best || *value > best->agreement + 0.02))
       best = ChangeByPictures{change, *value};
@@ -75,7 +75,8 @@ std::optional<ChangeByPictures> change_by_pictures(const TrackPictures& pictures
 // computed without the port. The photographs tell which.
 std::optional<std::string> by_pictures(const PortCheck& check, const io::ColmapModel& sample,
                                        const pose::Bundle& in_air, const pose::Bundle& bundle,
-                                       bool ports, const std::filesystem::path& image_folder) {
+                                       bool ports, const std::filesystem::path& image_folder,
+                                       const Context& context) {
   if (image_folder.empty()) return {};
   const TrackPictures pictures(sample, in_air, image_folder);
   const auto at_tracks = pictures.at_tracks();
@@ -83,13 +84,13 @@ std::optional<std::string> by_pictures(const PortCheck& check, const io::ColmapM
   const auto agreement = pictures.behind(bundle);
   if (!agreement) return {};
   const double behind = *agreement;
-  log_details("Photographs: {:.2f} at the tracks, {:.2f} where the cameras predict", *at_tracks,
-              behind);
+  context.details("Photographs: {:.2f} at the tracks, {:.2f} where the cameras predict", *at_tracks,
+                  behind);
   if (ports && !check.fits() && *at_tracks > kAgree && *at_tracks > behind + kClearlyMore)
     return text_without_port(check, *at_tracks, behind);
   if (*at_tracks > kAgree) return {};
   const double given = std::max(ports ? behind : *at_tracks, 0.0);
-  const auto better = change_by_pictures(pictures, bundle, given);
+  const auto better = change_by_pictures(pictures, bundle, given, context);
   if (!better && (given >= kNothingInCommon || *at_tracks >= kNothingInCommon)) return {};
   return text_by_pictures(given, ports, better);
 }
@@ -97,15 +98,16 @@ std::optional<std::string> by_pictures(const PortCheck& check, const io::ColmapM
 }  // namespace
 
 std::optional<std::string> import_warning(const io::ColmapModel& model, const io::Housing& housing,
-                                          const std::filesystem::path& image_folder) {
+                                          const std::filesystem::path& image_folder,
+                                          const Context& context) {
   try {
     const io::ColmapModel sample = sample_tracks(model);
     pose::Bundle in_air = pose::to_bundle(sample, sample.cameras, {}).bundle;
     triangulate(in_air);
     const pose::Bundle bundle = behind_ports(in_air, sample, housing);
     const PortCheck check = check_ports(bundle, claimed_errors(sample));
-    log_details("Tracks: {} points, {} observations, {:.3f} px off, {:.3f} px in air", check.points,
-                check.observations, check.residual, check.in_air);
+    context.details("Tracks: {} points, {} observations, {:.3f} px off, {:.3f} px in air",
+                    check.points, check.observations, check.residual, check.in_air);
     if (!check.tells()) return {};
     const bool ports = std::ranges::any_of(bundle.cameras, [](const pose::BundleCamera& camera) {
       return camera.measured.port.has_value();
@@ -114,7 +116,7 @@ std::optional<std::string> import_warning(const io::ColmapModel& model, const io
     const bool carried = std::ranges::any_of(
         sample.cameras, [](const io::ColmapCamera& camera) { return camera.port.has_value(); });
     if (check.fits_in_air() && !carried)
-      return by_pictures(check, sample, in_air, bundle, ports, image_folder);
+      return by_pictures(check, sample, in_air, bundle, ports, image_folder, context);
     if (check.fits()) return {};
     return text_of(check, ports);
   } catch (const Error&) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "axial/base.h"
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
 
@@ -27,8 +28,9 @@ namespace axial::diagnosis {
 // DensifyPointCloud show it (depth/agreement.h).
 //
 // Throws no Error. An unsupported lens, an image whose rays do not reach its port, or a photograph
-// that cannot be read gives no warning.
+// that cannot be read gives no warning. `context` gets the numbers that decide, as details.
 std::optional<std::string> import_warning(const io::ColmapModel& model, const io::Housing& housing,
-                                          const std::filesystem::path& image_folder);
+                                          const std::filesystem::path& image_folder,
+                                          const Context& context = {});
 
 }  // namespace axial::diagnosis

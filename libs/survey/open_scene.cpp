@@ -56,16 +56,16 @@ void read_headers(Survey& survey) {
   error.rethrow();
 }
 
-void check_sizes(const Survey& survey) {
+void check_sizes(const Survey& survey, const Context& context) {
   std::vector<io::PhotographSize> sizes;
   for (const View& view : survey.views) {
     const CameraModel& camera = survey.scene.images[view.image].camera;
     sizes.push_back({view.file, view.header.size, {camera.width, camera.height}});
   }
-  io::check_photograph_sizes(sizes);
+  io::check_photograph_sizes(sizes, context);
 }
 
-void find_bit_depth(Survey& survey) {
+void find_bit_depth(Survey& survey, const Context& context) {
   std::vector<fs::path> photographs;
   std::vector<io::ImageHeader> headers;
   for (const View& view : survey.views) {
@@ -73,7 +73,7 @@ void find_bit_depth(Survey& survey) {
     headers.push_back(view.header);
   }
   const Options& options = survey.options;
-  survey.bit_depth = io::common_bit_depth(photographs, headers, options.bit_depth);
+  survey.bit_depth = io::common_bit_depth(photographs, headers, options.bit_depth, context);
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ Survey open_scene(const Options& options, const Context& context) {
     if (const auto counts = io::count_mvs(file))
       context.memory().require(counts->reading_bytes(), "reading " + file.string());
   Survey survey{options.memory_survey ? scene_of(*options.memory_survey)
-                                      : io::read_scene_with_cameras(options.files),
+                                      : io::read_scene_with_cameras(options.files, context),
                 options,
                 {},
                 {},
@@ -96,10 +96,10 @@ Survey open_scene(const Options& options, const Context& context) {
 
 void find_photographs(Survey& survey, const Context& context) {
   read_headers(survey);
-  check_sizes(survey);
+  check_sizes(survey, context);
   choose_masks(survey, context);
   find_colors(survey);
-  find_bit_depth(survey);
+  find_bit_depth(survey, context);
   survey.add_inputs(photograph_files(survey));
   survey.inputs.push_back(survey.options.views_file);
   if (survey.options.compares_photographs)

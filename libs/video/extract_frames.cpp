@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "base/order_statistics.h"
 #include "io/images/image.h"
 #include "video/clip.h"
@@ -53,15 +52,16 @@ void check_count(const ChosenFrames& found, double share) {
 
 }  // namespace
 
-ChosenFrames choose_in_clip(const fs::path& path, double share, const ProgressSink& sink) {
+ChosenFrames choose_in_clip(const fs::path& path, double share, const ProgressSink& sink,
+                            const Context& context) {
   Clip clip(path);
   ChosenFrames found{path, {}, clip.frames_per_second(), {}, {}};
   measure_frames(clip, found, sink);
   if (found.frames.empty()) fail_in(path, "no frame can be decoded");
   if (static_cast<double>(found.frames.size()) <
       kWholeClip * static_cast<double>(clip.stated_count()))
-    log_warning("{}: ends after {} of {} frames; copy it again", path.string(), found.frames.size(),
-                clip.stated_count());
+    context.warning("{}: ends after {} of {} frames; copy it again", path.string(),
+                    found.frames.size(), clip.stated_count());
   found.chosen =
       choose_frames(found.frames, {share, found.frames_per_second, aspect_of(found.size)});
   check_count(found, share);

@@ -31,10 +31,10 @@ struct ChosenFrames {
 // Measures all frames of a clip and chooses some (choose_frames.h). Memory does not grow with the
 // pixels of the clip. `share`: ChoiceRules::share; messages call it the setting "share". Error that
 // names the clip if it cannot be read (clip.h), if frames have different sizes, or if fewer than
-// kLeastFrames frames are chosen. Warning if the file ends before 0.9 times the frames that it
-// states.
+// kLeastFrames frames are chosen. Warns through `context` if the file ends before 0.9 times the
+// frames that it states.
 ChosenFrames choose_in_clip(const std::filesystem::path& clip, double share,
-                            const ProgressSink& sink = {});
+                            const ProgressSink& sink, const Context& context);
 
 // How far the picture moves from the frame before to frame `i`, in pixels of the clip. 0 if the
 // motion is not known.

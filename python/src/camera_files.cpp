@@ -10,6 +10,7 @@
 #include "src/arrays.h"
 #include "src/bind.h"
 #include "src/camera.h"
+#include "src/stage.h"
 
 namespace axial::python {
 namespace {
@@ -37,8 +38,9 @@ Camera camera_of(const io::ColmapCamera& from, const fs::path& file) {
 
 std::map<std::uint32_t, Camera> read_cameras(const fs::path& path) {
   std::map<std::uint32_t, Camera> cameras;
-  for (const io::ColmapCamera& camera : io::read_colmap_cameras(path))
-    cameras.emplace(camera.id, camera_of(camera, path));
+  const auto read =
+      logged([&](const Context& context) { return io::read_colmap_cameras(path, context); });
+  for (const io::ColmapCamera& camera : read) cameras.emplace(camera.id, camera_of(camera, path));
   return cameras;
 }
 
@@ -80,7 +82,13 @@ void bind_camera_files(py::module_& module) {
       .def("port_of", &Housing::port_of, py::arg("image_name"), py::arg("camera_id") = 0)
       .def("carried_port", &Housing::carried_port, py::arg("name"));
   module.def(
-      "read_housing", [](const fs::path& path) { return io::read_housing(path); }, py::arg("path"));
+      "read_housing",
+      [](const fs::path& path) {
+        return logged([&](const Context& context) {
+          return io::read_housing(path, io::PortValues::checked, context);
+        });
+      },
+      py::arg("path"));
   module.def("write_housing", &io::write_housing, py::arg("path"), py::arg("housing"));
   module.def("read_cameras", &read_cameras, py::arg("path"));
 }

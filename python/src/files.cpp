@@ -19,6 +19,7 @@
 #include "src/bind.h"
 #include "src/records.h"
 #include "src/scene_files.h"
+#include "src/stage.h"
 #include "survey/memory_survey.h"
 
 namespace axial::python {
@@ -34,7 +35,8 @@ auto unlocked(Work work) {
 }
 
 py::dict read_depth_map(const fs::path& path) {
-  io::StoredDepthMap stored = unlocked([&] { return io::read_dmap(path); });
+  io::StoredDepthMap stored = logged(
+      [&](const Context& context) { return io::read_dmap(path, io::DmapSide::used, context); });
   py::dict fields = fields_of(std::move(stored.map));
   fields["made_from"] = stored.made_from;
   return fields;
@@ -84,18 +86,19 @@ py::dict read_scene(const fs::path& path, const std::optional<fs::path>& working
                     const std::optional<fs::path>& housing, const std::string& ports,
                     bool allow_missing) {
   const io::SceneFiles files = scene_files(path, working_folder, housing, ports, allow_missing);
-  const io::SceneWithCameras scene = unlocked([&] { return io::read_scene_with_cameras(files); });
+  const io::SceneWithCameras scene =
+      logged([&](const Context& context) { return io::read_scene_with_cameras(files, context); });
   return fields_of(scene.scene, scene.frame);
 }
 
 void write_scene(const fs::path& path, const py::dict& fields,
                  const std::optional<fs::path>& working_folder) {
   io::SceneWithCameras scene{to_scene(fields), frame_of(fields), {}};
-  unlocked([&] {
+  run_logged([&](const Context& context) {
     const fs::path output = fs::absolute(path);
     scene.housing = survey::housing_of(scene.scene);
     const io::SceneLenses lenses = io::lenses_of(scene.scene, output);
-    io::write_cameras_beside(output, scene, lenses, {});
+    io::write_cameras_beside(output, scene, lenses, {}, context);
     io::write_mvs(output, scene.scene, fs::absolute(working_folder.value_or(output.parent_path())));
   });
 }

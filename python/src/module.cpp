@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The module axialmvs._axialmvs. The package axialmvs gives its names to users.
-#include "base/log.h"
 #include "src/bind.h"
 
 // The order is that of the types: a function whose default value or result has a type needs it.
 PYBIND11_MODULE(_axialmvs, module) {
   using namespace axial::python;
   module.doc() = "The libraries of AxialMVS. Use the package axialmvs.";
-  axial::start_log("axialmvs", "");
-  axial::set_log_level(axial::LogLevel::warning);
   bind_errors(module);
   bind_ports(module);
   bind_cameras(module);

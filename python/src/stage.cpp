@@ -149,4 +149,19 @@ void run_stage(const StageControls& controls, const std::function<void(const Con
   if (failure) std::rethrow_exception(failure);
 }
 
+void run_logged(const std::function<void(const Context&)>& work) {
+  std::vector<Event> events;
+  std::exception_ptr failure;
+  {
+    const py::gil_scoped_release unlocked;
+    try {
+      work(Context([&](const Event& event) { events.push_back(event); }));
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  }
+  for (const Event& event : events) deliver(event, py::none());
+  if (failure) std::rethrow_exception(failure);
+}
+
 }  // namespace axial::python

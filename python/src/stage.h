@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs a stage for Python: with progress, lines for Python's logging, and a stop.
+// Runs functions of the libraries for Python: with lines for Python's logging, and stages also with
+// progress and a stop.
 #pragma once
 
 #include <pybind11/pybind11.h>
 
 #include <cstdint>
 #include <functional>
+#include <type_traits>
 
 #include "axial/base.h"
 #include "src/keywords.h"
@@ -30,5 +32,17 @@ struct StageControls {
 //
 // `work` runs without Python's lock. It takes the lock to call Python.
 void run_stage(const StageControls& controls, const std::function<void(const Context&)>& work);
+
+// Calls `work` without Python's lock, for work that is too short for a stage. Then writes the lines
+// of `work` to Python's logger "axialmvs", also if `work` throws.
+void run_logged(const std::function<void(const Context&)>& work);
+
+// The same for work with a result, which is returned.
+template <class Work>
+auto logged(Work work) {
+  std::invoke_result_t<Work, const Context&> result;
+  run_logged([&](const Context& context) { result = work(context); });
+  return result;
+}
 
 }  // namespace axial::python

@@ -95,12 +95,10 @@ io::TexturedFormat format_of(const fs::path& path) {
 
 py::dict read_textured_mesh(const fs::path& path) {
   LocalFrame frame;
-  TexturedMesh mesh;
-  {
-    const py::gil_scoped_release release;
+  TexturedMesh mesh = logged([&](const Context& context) {
     frame = frame_of_file(path);
-    mesh = io::read_textured_mesh(path, frame);
-  }
+    return io::read_textured_mesh(path, frame, context);
+  });
   return fields_of(std::move(mesh), frame);
 }
 

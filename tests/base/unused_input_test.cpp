@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/log.h"
 #include "base/program.h"
+#include "support/captured_events.h"
 #include "support/error_of.h"
 
 namespace axial {
@@ -15,18 +15,18 @@ using testing::HasSubstr;
 
 TEST(UnusedInput, IsAnErrorThatNamesTheWayOut) {
   UnusedInput unused(false);
-  const std::string said = test::error_of([&] { unused.report("--port X: is not there"); });
+  const std::string said = test::error_of([&] { unused.report("--port X: is not there", {}); });
   EXPECT_THAT(said, testing::StartsWith("--port X: is not there"));
   EXPECT_THAT(said, HasSubstr("(allow_missing continues without it)"));
   EXPECT_TRUE(unused.lines().empty());
 }
 
 TEST(UnusedInput, IsAWarningWhereItIsAllowed) {
-  const LogCapture log;
+  test::CapturedEvents log;
   UnusedInput unused(true);
-  unused.report("--port X: is not there");
-  unused.report("--scale Y: no image");
-  EXPECT_THAT(log.text(), HasSubstr("--port X: is not there; it is not used\n"));
+  unused.report("--port X: is not there", log.context);
+  unused.report("--scale Y: no image", log.context);
+  EXPECT_THAT(log.lines, HasSubstr("--port X: is not there; it is not used\n"));
   EXPECT_EQ(unused.lines(),
             (std::vector<std::string>{"--port X: is not there", "--scale Y: no image"}));
 }

@@ -21,7 +21,11 @@ refractive::DomePort<double> dome_port() {
 
 void read_housing_file(const fs::path& file) {
   read_and_copy(
-      file, [](const fs::path& path) { return io::read_housing(path); }, io::write_housing);
+      file,
+      [](const fs::path& path) {
+        return io::read_housing(path, io::PortValues::checked, dropping_lines());
+      },
+      io::write_housing);
 }
 
 bool write_housing_seed(const fs::path& file, int variant) {
@@ -78,7 +82,8 @@ bool write_geo_seed(const fs::path& file, int variant) {
 
 void read_calibmar_file(const fs::path& file) {
   io::says_no_port(file);
-  read_and_copy(file, io::read_calibmar, [](const fs::path& path, const io::ColmapCamera& camera) {
+  const auto read = [](const fs::path& path) { return io::read_calibmar(path, dropping_lines()); };
+  read_and_copy(file, read, [](const fs::path& path, const io::ColmapCamera& camera) {
     io::write_calibmar(path, camera);
   });
 }

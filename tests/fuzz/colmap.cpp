@@ -35,13 +35,18 @@ WriteModel writer_of(const std::vector<io::ColmapCamera>& cameras, WriteModel co
 }
 
 void read_cameras_bin(const fs::path& file) {
-  const auto cameras = io::read_cameras_binary(file);
-  read_part(file, io::read_cameras_binary, &ColmapModel::cameras,
-            writer_of(cameras, io::write_colmap_binary, io::write_underwater_binary));
+  const auto read = [](const fs::path& path) {
+    return io::read_cameras_binary(path, dropping_lines());
+  };
+  read_part(file, +read, &ColmapModel::cameras,
+            writer_of(read(file), io::write_colmap_binary, io::write_underwater_binary));
 }
 
 void read_cameras_txt(const fs::path& file) {
-  read_part(file, io::read_cameras_text, &ColmapModel::cameras, io::write_underwater_text);
+  const auto read = [](const fs::path& path) {
+    return io::read_cameras_text(path, dropping_lines());
+  };
+  read_part(file, +read, &ColmapModel::cameras, io::write_underwater_text);
 }
 
 bool same_colmap_image(const io::ColmapImage& a, const io::ColmapImage& b) {

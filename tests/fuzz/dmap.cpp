@@ -91,7 +91,7 @@ void read_side_file(const fs::path& file) {
     write_atomically(file, bytes);
   }
   io::read_dmap_header(map);
-  const io::StoredDepthMap stored = io::read_dmap(map);
+  const io::StoredDepthMap stored = io::read_dmap(map, io::DmapSide::used, dropping_lines());
   require(io::dmap_status(map).is_ours_from(stored.made_from), "the map is not found to be ours");
   expect_same_copy(stored, map);
 }

@@ -17,7 +17,6 @@
 #include <set>
 #include <vector>
 
-#include "base/log.h"
 #include "reader.h"
 
 namespace axial::fuzz {
@@ -67,10 +66,6 @@ class Test {
 
   void run(std::string_view bytes) {
     put(file_, bytes);
-    if (runs_++ % 256 == 0) {
-      log_.reset();
-      log_ = std::make_unique<LogCapture>();
-    }
     try {
       reader_.read(file_);
     } catch (const Error& error) {
@@ -84,8 +79,6 @@ class Test {
   Reader reader_;
   Folder folder_;
   fs::path file_;
-  std::unique_ptr<LogCapture> log_;  // is replaced from time to time, because it keeps all lines
-  std::size_t runs_ = 0;
 };
 
 void write_seeds(const Reader& reader, const fs::path& folder, const fs::path& staging) {

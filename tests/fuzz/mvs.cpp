@@ -50,7 +50,9 @@ bool same_scene(const Scene& a, const Scene& b) {
 }
 
 void read_scene(const fs::path& file) {
-  const auto read = [](const fs::path& path) { return io::read_mvs(path, "/images"); };
+  const auto read = [](const fs::path& path) {
+    return io::read_mvs(path, "/images", dropping_lines());
+  };
   const Scene scene = read(file);
   // The writer refuses a scene without a calibrated image.
   if (std::ranges::none_of(scene.images, &SceneImage::calibrated)) return;

@@ -98,7 +98,9 @@ void write_glb(const fs::path& path, const TexturedMesh& mesh) {
 // not copied, because that takes too long.
 void read_glb_file(const fs::path& file) {
   ask_of_mesh(file);
-  const auto read = [](const fs::path& path) { return io::read_textured_gltf(path); };
+  const auto read = [](const fs::path& path) {
+    return io::read_textured_gltf(path, {}, dropping_lines());
+  };
   const TexturedMesh mesh = read(file);
   for (const cv::Mat3b& texture : mesh.textures)
     if (texture.total() > (1u << 16)) return;

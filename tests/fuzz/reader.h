@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "axial/base.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 
@@ -42,6 +43,12 @@ std::span<const Reader> text_readers();
 
 inline void require(bool good, const std::string& fault) {
   if (!good) report(fault);
+}
+
+// For readers that warn: makes the text of each line, and drops it.
+inline const Context& dropping_lines() {
+  static const Context context([](const Event&) {});
+  return context;
 }
 
 // Returns the path of a file with the same name in the subfolder "again" of the file's folder.

@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "base/log.h"
 #include "base/program.h"
 #include "io/images/image.h"
+#include "support/captured_events.h"
 #include "support/empty_folder.h"
 #include "support/error_of.h"
 
@@ -56,11 +56,11 @@ TEST(BitDepth, IsFoundOverTheWholeSetAndStatedOnce) {
     }
     std::vector<ImageHeader> headers;
     for (const fs::path& path : paths) headers.push_back(read_image_header(path));
-    const LogCapture log;
-    EXPECT_EQ(common_bit_depth(paths, headers, 0), most);
-    EXPECT_EQ(log.text(),
+    test::CapturedEvents log;
+    EXPECT_EQ(common_bit_depth(paths, headers, 0, log.context), most);
+    EXPECT_EQ(log.lines,
               fmt::format("The values of 5 images of 16 bits use {} bits (see bit_depth)\n", most));
-    EXPECT_EQ(common_bit_depth(paths, headers, 14), 14);
+    EXPECT_EQ(common_bit_depth(paths, headers, 14, log.context), 14);
   }
   fs::remove_all(folder);
 }
@@ -68,11 +68,11 @@ TEST(BitDepth, IsFoundOverTheWholeSetAndStatedOnce) {
 TEST(BitDepth, EightBitFilesAreNotRead) {
   const std::vector<fs::path> nowhere{"/no/such/file.png"};
   const std::vector<ImageHeader> headers{{{10, 10}, 8, false, 4}};
-  const LogCapture log;
-  EXPECT_EQ(common_bit_depth(nowhere, headers, 0), 16);
-  EXPECT_EQ(log.text(), "");
-  common_bit_depth(nowhere, headers, 12);
-  EXPECT_THAT(log.text(), HasSubstr("bit_depth 12: is not used"));
+  test::CapturedEvents log;
+  EXPECT_EQ(common_bit_depth(nowhere, headers, 0, log.context), 16);
+  EXPECT_EQ(log.lines, "");
+  common_bit_depth(nowhere, headers, 12, log.context);
+  EXPECT_THAT(log.lines, HasSubstr("bit_depth 12: is not used"));
 }
 
 int parsed_bit_depth(int value) {

@@ -7,10 +7,10 @@
 #include <array>
 
 #include "base/atomic_file.h"
-#include "base/log.h"
 #include "io/colmap/colmap.h"
 #include "io/same_colmap.h"
 #include "io/wrong_input.h"
+#include "support/captured_events.h"
 
 namespace axial::io {
 namespace {
@@ -59,7 +59,7 @@ RC_GTEST_PROP(ColmapFolder, IsReadAsColmapDoes, ()) {
   write_colmap_binary(folder, small_model());
   remove_parts(folder, ".txt", text);
   remove_parts(folder, ".bin", binary);
-  const LogCapture log;
+  test::CapturedEvents log;
   if (!all(text) && !all(binary)) {
     const std::string error = error_of([&] { read_colmap_model(folder); });
     for (std::size_t i = 0; i < 3; ++i) {
@@ -69,10 +69,10 @@ RC_GTEST_PROP(ColmapFolder, IsReadAsColmapDoes, ()) {
     }
     return;
   }
-  const ColmapModel read = read_colmap_model(folder);
+  const ColmapModel read = read_colmap_model(folder, log.context);
   RC_ASSERT((read.cameras[0].params[0] == 500) == (all(binary) || !differs[0]));
   RC_ASSERT((read.points.size() == 2) == (all(binary) || !differs[2]));
-  const std::string said = log.text();
+  const std::string said = log.lines;
   bool any = false;
   for (std::size_t i = 0; i < 3; ++i) {
     const bool ignored = differs[i] && text[i] && binary[i];
@@ -86,9 +86,9 @@ RC_GTEST_PROP(ColmapFolder, IsReadAsColmapDoes, ()) {
 class ColmapFolderTest : public test::FolderTest {
  protected:
   std::string said_on_reading() const {
-    const LogCapture log;
-    read_colmap_model(folder_);
-    return log.text();
+    test::CapturedEvents log;
+    read_colmap_model(folder_, log.context);
+    return log.lines;
   }
 };
 
@@ -125,17 +125,17 @@ TEST_F(ColmapFolderTest, WarnsOfAFileThatCannotBeRead) {
 
 // A folder with only a lens needs no complete model.
 TEST_F(ColmapFolderTest, CamerasAloneGoByTheSameOrder) {
-  const auto focal = [&] { return read_colmap_cameras(folder_).at(0).params[0]; };
+  test::CapturedEvents log;
+  const auto focal = [&] { return read_colmap_cameras(folder_, log.context).at(0).params[0]; };
   write_colmap_text(folder_, changed({true, false, false}));
   EXPECT_EQ(focal(), 500.01);
   write_colmap_binary(folder_, small_model());
   for (const char* name : {"images.bin", "points3D.bin"}) fs::remove(folder_ / name);
-  const LogCapture log;
   EXPECT_EQ(focal(), 500.01) << "the text model is whole";
-  EXPECT_THAT(log.text(), HasSubstr("cameras.txt is read, as in COLMAP; ignored: cameras.bin"));
+  EXPECT_THAT(log.lines, HasSubstr("cameras.txt is read, as in COLMAP; ignored: cameras.bin"));
   for (const char* name : {"images.txt", "points3D.txt"}) fs::remove(folder_ / name);
   EXPECT_EQ(focal(), 500) << "of two files alone the binary one";
-  EXPECT_THAT(log.text(), HasSubstr("cameras.bin is read, as in COLMAP; ignored: cameras.txt"));
+  EXPECT_THAT(log.lines, HasSubstr("cameras.bin is read, as in COLMAP; ignored: cameras.txt"));
   EXPECT_EQ(read_colmap_cameras(folder_ / "cameras.txt").at(0).params[0], 500.01);
 }
 
@@ -153,9 +153,9 @@ TEST_F(ColmapFolderTest, NamesModelsInOtherPlaces) {
   }
   test::put(sparse / "cameras.txt", "stale");  // not a complete model
   const auto said = [&] {
-    const LogCapture log;
-    const fs::path found = find_colmap_model(folder_);
-    return std::pair(found, log.text());
+    test::CapturedEvents log;
+    const fs::path found = find_colmap_model(folder_, log.context);
+    return std::pair(found, log.lines);
   };
   EXPECT_EQ(said().first, sparse / "0");
   EXPECT_THAT(said().second, HasSubstr((sparse / "0").string() + ": this model is read; ignored: " +

@@ -7,9 +7,9 @@
 #include <random>
 #include <set>
 
-#include "base/log.h"
 #include "io/colmap_scene_fixture.h"
 #include "io/images/image.h"
+#include "support/captured_events.h"
 #include "support/error_of.h"
 
 namespace axial::io {
@@ -103,9 +103,9 @@ TEST_F(ColmapScene, ImagesCountOncePerPoint) {
     expected.push_back(images);
     model_.points.push_back(point);
   }
-  const LogCapture log;
-  const Scene scene = import_colmap_scene(model_, import_);
-  EXPECT_THAT(log.text(), HasSubstr(fmt::format(": {} observations are ignored", repeated)));
+  test::CapturedEvents log;
+  const Scene scene = import_colmap_scene(model_, import_, {}, {}, {}, log.context);
+  EXPECT_THAT(log.lines, HasSubstr(fmt::format(": {} observations are ignored", repeated)));
   for (std::size_t i = 0; i < expected.size(); ++i) {
     std::set<std::uint32_t> images;
     for (const SparseView& view : scene.points[i].views)

@@ -7,9 +7,9 @@
 #include <Eigen/Geometry>
 
 #include "base/atomic_file.h"
-#include "base/log.h"
 #include "io/wrong_input.h"
 #include "scene/camera_model.h"
+#include "support/captured_events.h"
 
 namespace axial::io {
 namespace {
@@ -65,37 +65,38 @@ TEST_F(GeoOffset, WrongFilesAreOneLine) {
 TEST_F(GeoOffset, ASceneKeepsTheFileBesideIt) {
   write_geo_offset_beside(scene_, kFar);
   Scene scene = scene_at({1, 2, 3});
-  const LogCapture log;
-  EXPECT_EQ(enter_local_frame(scene, scene_).origin, kFar.origin);
+  test::CapturedEvents log;
+  EXPECT_EQ(enter_local_frame(scene, scene_, log.context).origin, kFar.origin);
   EXPECT_EQ(scene.images[0].pose.centre, Eigen::Vector3d(1, 2, 3));
-  EXPECT_EQ(log.text(), "");
+  EXPECT_EQ(log.lines, "");
 }
 
 TEST_F(GeoOffset, ASceneWithAnotherOnesFileIsSaid) {
   write_geo_offset_beside(scene_, kFar);
   Scene scene = scene_at({534000, 3378500, 0});
-  const LogCapture log;
-  enter_local_frame(scene, scene_);
-  EXPECT_THAT(log.text(), HasSubstr(file_.string()));
-  EXPECT_THAT(log.text(), HasSubstr(" m from this origin"));
+  test::CapturedEvents log;
+  enter_local_frame(scene, scene_, log.context);
+  EXPECT_THAT(log.lines, HasSubstr(file_.string()));
+  EXPECT_THAT(log.lines, HasSubstr(" m from this origin"));
 }
 
 TEST_F(GeoOffset, AFarSceneWithoutAFileEntersAFrame) {
   Scene scene = scene_at({534012, 3378476, 7});
-  const LogCapture log;
-  EXPECT_EQ(enter_local_frame(scene, scene_).origin, Eigen::Vector3d(534010, 3378480, 10));
+  test::CapturedEvents log;
+  EXPECT_EQ(enter_local_frame(scene, scene_, log.context).origin,
+            Eigen::Vector3d(534010, 3378480, 10));
   EXPECT_EQ(scene.images[0].pose.centre, Eigen::Vector3d(2, -4, -3));
   EXPECT_EQ(scene.points[0].position, Eigen::Vector3f(2, -4, -3));
-  EXPECT_THAT(log.text(), HasSubstr("a resolution of only 0.25 m"));
+  EXPECT_THAT(log.lines, HasSubstr("a resolution of only 0.25 m"));
 }
 
 TEST_F(GeoOffset, ANearSceneStaysAsItIs) {
   Scene scene = scene_at({0, 200.1, 3});
   scene.images[0].pose.centre.x() = -0.0;
-  const LogCapture log;
-  EXPECT_TRUE(enter_local_frame(scene, scene_).is_world());
+  test::CapturedEvents log;
+  EXPECT_TRUE(enter_local_frame(scene, scene_, log.context).is_world());
   EXPECT_TRUE(std::signbit(scene.images[0].pose.centre.x()));
-  EXPECT_EQ(log.text(), "");
+  EXPECT_EQ(log.lines, "");
 }
 
 TEST_F(GeoOffset, ModelsGoIntoAFrameAndBack) {

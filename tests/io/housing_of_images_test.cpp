@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/log.h"
 #include "io/cameras/housing.h"
 #include "io/housing_fixture.h"
+#include "support/captured_events.h"
 
 namespace axial::io {
 namespace {
@@ -157,9 +157,9 @@ TEST_F(HousingTest, EveryLineNamesTheFile) {
   housing.images = {{"gone.jpg", "main"}};
   Scene scene;
   scene.images.emplace_back().path = "/x/a.jpg";
-  LogCapture log;
-  attach_ports(scene, housing, "h.json");
-  EXPECT_THAT(log.text(), HasSubstr("h.json: no image matches images.gone.jpg"));
+  test::CapturedEvents log;
+  attach_ports(scene, housing, "h.json", log.context);
+  EXPECT_THAT(log.lines, HasSubstr("h.json: no image matches images.gone.jpg"));
   housing.cameras = {{1, "main"}};
   EXPECT_THAT(error_of([&] { attach_ports(scene, housing, "h.json"); }),
               testing::StartsWith("h.json: housing.cameras "));

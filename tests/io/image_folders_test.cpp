@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "base/log.h"
 #include "io/wrong_input.h"
+#include "support/captured_events.h"
 
 namespace axial::io {
 namespace {
@@ -34,23 +34,23 @@ class ImageFoldersTest : public test::FolderTest {
     return (folder / name).string();
   }
   std::vector<std::string> find(const std::vector<std::string>& names) const {
-    return find_files_of_scene(here(), run() / "scene.mvs", names, "images");
+    return find_files_of_scene(here(), run() / "scene.mvs", names, "images", log_.context);
   }
+
+  test::CapturedEvents log_;
 };
 
 TEST_F(ImageFoldersTest, TheWorkingFolderIsFirst) {
   const std::string usual = photograph(here(), "images/a.jpg");
-  const LogCapture log;
   EXPECT_THAT(find({"images/a.jpg", "images/./x/../a.jpg", ""}), ElementsAre(usual, usual, ""));
-  EXPECT_EQ(log.text(), "");
+  EXPECT_EQ(log_.lines, "");
 }
 
 TEST_F(ImageFoldersTest, TheFolderOfTheSceneIsNext) {
   const std::string beside = photograph(run(), "images/a.jpg");
   photograph(above(), "images/a.jpg");
-  const LogCapture log;
   EXPECT_THAT(find({"images/a.jpg"}), ElementsAre(beside));
-  EXPECT_THAT(log.text(),
+  EXPECT_THAT(log_.lines,
               HasSubstr("scene.mvs: the paths of its images start at " + run().string() + "\n"));
 }
 
@@ -59,10 +59,9 @@ TEST_F(ImageFoldersTest, AFolderThatHasAllFilesIsTaken) {
   const std::string b = photograph(above(), "images/b.jpg");
   photograph(here(), "images/a.jpg");
   const std::string other = photograph(run(), "images/b.jpg");
-  const LogCapture log;
   EXPECT_THAT(find({"images/a.jpg", "images/b.jpg"}), ElementsAre(a, b));
-  EXPECT_THAT(log.text(), HasSubstr("the paths of its images start at " + above().string()));
-  EXPECT_THAT(log.text(), HasSubstr(a + " is used, although " + here().string()));
+  EXPECT_THAT(log_.lines, HasSubstr("the paths of its images start at " + above().string()));
+  EXPECT_THAT(log_.lines, HasSubstr(a + " is used, although " + here().string()));
 }
 
 TEST_F(ImageFoldersTest, TheFolderWithTheMostFilesIsTaken) {
@@ -93,9 +92,8 @@ TEST_F(ImageFoldersTest, AnAbsoluteNameOfAFileIsThisFile) {
 }
 
 TEST_F(ImageFoldersTest, FilesThatAreNowhereAreInTheWorkingFolder) {
-  const LogCapture log;
   EXPECT_THAT(find({"images/a.jpg"}), ElementsAre((here() / "images/a.jpg").string()));
-  EXPECT_EQ(log.text(), "");
+  EXPECT_EQ(log_.lines, "");
 }
 
 TEST_F(ImageFoldersTest, TwoFilesOfOneNameAreOneWarning) {
@@ -103,20 +101,18 @@ TEST_F(ImageFoldersTest, TwoFilesOfOneNameAreOneWarning) {
     photograph(here(), name);
     photograph(run(), name);
   }
-  const LogCapture log;
   EXPECT_THAT(find({"a.jpg", "b.jpg"}),
               ElementsAre((here() / "a.jpg").string(), (here() / "b.jpg").string()));
-  EXPECT_THAT(log.text(),
+  EXPECT_THAT(log_.lines,
               HasSubstr("a.jpg is used, although " + (run() / "a.jpg").string() + " exists, too"));
-  EXPECT_EQ(log.text().find("b.jpg"), std::string::npos);
+  EXPECT_EQ(log_.lines.find("b.jpg"), std::string::npos);
 }
 
 TEST_F(ImageFoldersTest, TwoNamesOfOneFileAreNoWarning) {
   photograph(run(), "a.jpg");
   fs::create_hard_link(run() / "a.jpg", here() / "a.jpg");
-  const LogCapture log;
   find({"a.jpg"});
-  EXPECT_EQ(log.text(), "");
+  EXPECT_EQ(log_.lines, "");
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "base/atomic_file.h"
-#include "base/log.h"
+#include "support/captured_events.h"
 #include "wrong_input.h"
 
 namespace axial::io {
@@ -194,9 +194,9 @@ TEST_F(LensesTest, RefusesAFileThatIsNotThere) {
 TEST_F(LensesTest, WarnsOfNamesThatNoImageHas) {
   test::put(file_, kExample);
   add("b.jpg", std::nullopt);
-  const LogCapture log;
-  attach_lenses_beside(scene_, scene_file_);
-  EXPECT_THAT(log.text(), HasSubstr(file_.string() + ": no image matches images.a.jpg"));
+  test::CapturedEvents log;
+  attach_lenses_beside(scene_, scene_file_, log.context);
+  EXPECT_THAT(log.lines, HasSubstr(file_.string() + ": no image matches images.a.jpg"));
 }
 
 TEST_F(LensesTest, SurvivesDamage) {

@@ -3,11 +3,11 @@
 
 #include <cstdint>
 
-#include "base/log.h"
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
 #include "io/wrong_input.h"
+#include "support/captured_events.h"
 
 namespace axial::io {
 namespace {
@@ -32,12 +32,10 @@ class MeshOfScene : public test::FolderTest, public testing::WithParamInterface<
 
   // Of read_mesh_of_scene(). That of read_textured_mesh_of_scene() is the same. It refuses a PLY
   // without textures.
-  static Eigen::Vector3f first_vertex(const fs::path& file) {
-    const Eigen::Vector3f first = read_mesh_of_scene(kOffset, file).vertices.front();
-    if (file.extension() != ".ply") {
-      const LogCapture log;
+  static Eigen::Vector3f first_vertex(const fs::path& file, const Context& context = {}) {
+    const Eigen::Vector3f first = read_mesh_of_scene(kOffset, file, context).vertices.front();
+    if (file.extension() != ".ply")
       EXPECT_EQ(read_textured_mesh_of_scene(kOffset, file).mesh.vertices.front(), first);
-    }
     return first;
   }
 };
@@ -45,19 +43,19 @@ class MeshOfScene : public test::FolderTest, public testing::WithParamInterface<
 TEST_P(MeshOfScene, LocalPositionsWithoutAnOffsetStayAsTheyAre) {
   const fs::path file = written({2, 3, 4});
   EXPECT_TRUE(is_without_offset(kOffset, file));
-  const LogCapture log;
-  EXPECT_EQ(first_vertex(file), Eigen::Vector3f(2, 3, 4));
-  EXPECT_THAT(log.text(), HasSubstr("states no offset; its coordinates count from the scene's "
-                                    "offset 534000 3378500 0"));
+  test::CapturedEvents log;
+  EXPECT_EQ(first_vertex(file, log.context), Eigen::Vector3f(2, 3, 4));
+  EXPECT_THAT(log.lines, HasSubstr("states no offset; its coordinates count from the scene's "
+                                   "offset 534000 3378500 0"));
 }
 
 // The floats of the file are exact here.
 TEST_P(MeshOfScene, WorldPositionsWithoutAnOffsetAreMovedToTheFrame) {
   const fs::path file = written({534002, 3378503, 4});
   EXPECT_FALSE(is_without_offset(kOffset, file));
-  const LogCapture log;
-  EXPECT_EQ(first_vertex(file), Eigen::Vector3f(2, 3, 4));
-  EXPECT_EQ(log.text(), "");
+  test::CapturedEvents log;
+  EXPECT_EQ(first_vertex(file, log.context), Eigen::Vector3f(2, 3, 4));
+  EXPECT_EQ(log.lines, "");
 }
 
 TEST_P(MeshOfScene, AnOffsetThatIsStatedCounts) {

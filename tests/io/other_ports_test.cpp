@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/log.h"
 #include "io/wrong_input.h"
+#include "support/captured_events.h"
 
 namespace axial::io {
 namespace {
@@ -72,9 +72,9 @@ TEST(HousingBesideAScene, IsNamedWhereItDiffers) {
   scene.images[1].path = "images/b.jpg";
   const Housing taken = housing_with(flat(0.02));
   const auto said = [&](const fs::path& file) {
-    const LogCapture log;
-    warn_of_housing_beside(scene, scene_path, taken, file);
-    return log.text();
+    test::CapturedEvents log;
+    warn_of_housing_beside(scene, scene_path, taken, file, log.context);
+    return log.lines;
   };
   const fs::path given = folder / "port.json";
   write_housing(given, taken);

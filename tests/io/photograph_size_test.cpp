@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "base/log.h"
+#include "support/captured_events.h"
 #include "support/error_of.h"
 
 namespace axial::io {
@@ -19,15 +19,15 @@ PhotographSize photograph(const char* file, cv::Size stored) {
 }
 
 std::string log_of(const std::vector<PhotographSize>& photographs) {
-  const LogCapture log;
-  check_photograph_sizes(photographs);
-  return log.text();
+  test::CapturedEvents log;
+  check_photograph_sizes(photographs, log.context);
+  return log.lines;
 }
 
 std::string error_for(cv::Size stored) {
   return error_of([&] {
     check_photograph_sizes(
-        std::vector{photograph("a.jpg", {1600, 1200}), photograph("b.jpg", stored)});
+        std::vector{photograph("a.jpg", {1600, 1200}), photograph("b.jpg", stored)}, {});
   });
 }
 

@@ -10,7 +10,7 @@
 #include <functional>
 #include <numbers>
 
-#include "base/log.h"
+#include "support/captured_events.h"
 #include "support/empty_folder.h"
 
 namespace axial::io {
@@ -34,9 +34,9 @@ std::size_t lines(const std::string& text) {
 }
 
 std::string said_of(const HousingPort& port) {
-  const LogCapture log;
-  warn_of_port_values(port, "port.json: housing.ports.main");
-  return log.text();
+  test::CapturedEvents log;
+  warn_of_port_values(port, "port.json: housing.ports.main", log.context);
+  return log.lines;
 }
 
 FlatPort<double> tilted(double degrees) {
@@ -94,10 +94,10 @@ TEST(PortValues, CamerasOfOnePortAreNamedOnce) {
     cameras[i].id = static_cast<std::uint32_t>(i + 1);
     cameras[i].port = wrong;
   }
-  const LogCapture log;
-  warn_of_port_values(cameras, "sparse/cameras.txt");
-  EXPECT_THAT(log.text(), HasSubstr("sparse/cameras.txt: camera 1: port.n_water is 1"));
-  EXPECT_EQ(lines(log.text()), 1u);
+  test::CapturedEvents log;
+  warn_of_port_values(cameras, "sparse/cameras.txt", log.context);
+  EXPECT_THAT(log.lines, HasSubstr("sparse/cameras.txt: camera 1: port.n_water is 1"));
+  EXPECT_EQ(lines(log.lines), 1u);
 }
 
 // Warnings for three images on a line behind `port`, which see points at `distance`.
@@ -119,9 +119,9 @@ std::string said_in_scene(const HousingPort& port, double distance, double outli
     for (std::uint32_t i = 0; i < 3; ++i) point.views.push_back({i, 0});
     scene.points.push_back(point);
   }
-  const LogCapture log;
-  attach_ports(scene, housing, "port.json");
-  return log.text();
+  test::CapturedEvents log;
+  attach_ports(scene, housing, "port.json", log.context);
+  return log.lines;
 }
 
 TEST(PortsInScene, PortsBeforeTheScenePass) {
@@ -164,12 +164,12 @@ TEST(PortValues, HousingFilesAreChecked) {
   wrong.n_water = 1;
   const auto file = test::empty_folder() / "port.json";
   write_housing(file, housing_with(wrong));
-  const LogCapture log;
-  read_housing(file, PortValues::passed_over);
-  EXPECT_EQ(log.text(), "");
-  read_housing(file);
-  EXPECT_THAT(log.text(), HasSubstr(file.string() + ": housing.ports.main.n_water is 1"));
-  EXPECT_EQ(lines(log.text()), 1u);
+  test::CapturedEvents log;
+  read_housing(file, PortValues::passed_over, log.context);
+  EXPECT_EQ(log.lines, "");
+  read_housing(file, PortValues::checked, log.context);
+  EXPECT_THAT(log.lines, HasSubstr(file.string() + ": housing.ports.main.n_water is 1"));
+  EXPECT_EQ(lines(log.lines), 1u);
 }
 
 }  // namespace

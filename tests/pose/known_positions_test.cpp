@@ -31,7 +31,7 @@ TEST(StraightTransectInDegrees, IsReportedAsUnusedIfNoLineStatesTheOrder) {
   write_atomically(folder / "known.txt", text);
   AdjustOptions adjust;
   const auto add = [&](UnusedInput& unused) {
-    return apps::add_known("positions:known.txt", {0.01, true}, folder, bundle, adjust, unused);
+    return apps::add_known("positions:known.txt", {0.01, true}, folder, bundle, adjust, unused, {});
   };
   UnusedInput unused(false), allowed(true);
   EXPECT_THAT(test::error_of([&] { add(unused); }), HasSubstr("allow_missing"));
@@ -69,7 +69,8 @@ class OneOffTheLine : public ::testing::Test {
       text += fmt::format("{}.jpg {} {} {}\n", i, place.x(), place.y(), place.z());
     }
     write_atomically(folder_ / "known.txt", text);
-    return apps::add_known("positions:known.txt", {0.01, true}, folder_, bundle_, adjust_, unused);
+    return apps::add_known("positions:known.txt", {0.01, true}, folder_, bundle_, adjust_, unused,
+                           {});
   }
 };
 

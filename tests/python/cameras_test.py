@@ -201,6 +201,18 @@ class Files(unittest.TestCase):
         self.assertEqual(found.carried_port("side"), dome)
         self.assertIsNone(found.carried_port("none"))
 
+    def test_warnings_go_to_the_logger(self):
+        path = self.folder / "h.json"
+        path.write_text('{"version": 1, "default": "a", "ports": {"a": {"type": "flat", "distance_m": 0.02,'
+                        '"thickness_m": 0.01, "n_glass": 1.5, "n_water": 1.34, "normal": [0, 0, 2]}}}')
+        with self.assertLogs("axialmvs", "WARNING") as logged:
+            axialmvs.read_housing(path)
+        self.assertEqual(len(logged.output), 1)
+        self.assertIn("has length 2: normalised", logged.output[0])
+        with self.assertLogs("axialmvs", "WARNING"), self.assertRaises(axialmvs.Error):
+            path.write_text(path.read_text().replace('"default": "a"', '"default": "b"'))
+            axialmvs.read_housing(path)
+
     def test_cameras_of_colmap(self):
         (self.folder / "cameras.txt").write_text("1 OPENCV 100 80 90 91 50.5 40.5 0.1 0.02 0.003 0.004\n"
                                                  "4 PINHOLE 10 8 9 9 5 4\n")

@@ -92,7 +92,8 @@ class YamlKeys {
   std::map<std::string, Words> values_;
 };
 
-refractive::Port<double> read_port(const YamlKeys& yaml, const std::string& file) {
+refractive::Port<double> read_port(const YamlKeys& yaml, const std::string& file,
+                                   const Context& context) {
   const std::string word = yaml.word("non_svp_model");
   if (!is_port_word(
           word))  // before its numbers: an unknown kind of port may have another number of them
@@ -102,7 +103,7 @@ refractive::Port<double> read_port(const YamlKeys& yaml, const std::string& file
     fail_in(file, "non_svp_parameters has {} numbers, expected {}", values.size(), kPortNumbers);
   PortNumbers numbers;
   std::copy(values.begin(), values.end(), numbers.begin());
-  return port_from(word, numbers, file + ": non_svp_parameters");
+  return port_from(word, numbers, file + ": non_svp_parameters", context);
 }
 
 bool without_port(const YamlKeys& yaml) {
@@ -122,7 +123,7 @@ bool is_calibmar(const std::filesystem::path& path) {
   return extension == ".yaml" || extension == ".yml";
 }
 
-ColmapCamera read_calibmar(const std::filesystem::path& path) {
+ColmapCamera read_calibmar(const std::filesystem::path& path, const Context& context) {
   const YamlKeys yaml(path);
   ColmapCamera camera;
   camera.id = 1;
@@ -132,7 +133,7 @@ ColmapCamera read_calibmar(const std::filesystem::path& path) {
   camera.params = yaml.numbers<double>("parameters");
   check_colmap_camera(camera, path.string());
   if (yaml.has("non_svp_model") && !without_port(yaml))
-    camera.port = read_port(yaml, path.string());
+    camera.port = read_port(yaml, path.string(), context);
   return camera;
 }
 

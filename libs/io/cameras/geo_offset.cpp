@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "base/output_name.h"
 #include "io/bytes/json.h"
 #include "io/bytes/json_place.h"
@@ -30,11 +29,11 @@ double float_step(const Scene& scene) {
 }
 
 // A stale file of another scene shows in a large distance of the cameras from its offset.
-void warn_if_far(const Scene& scene, const fs::path& file) {
+void warn_if_far(const Scene& scene, const fs::path& file, const Context& context) {
   constexpr double kFar = 1e5;
   const double left = frame_of(scene).origin.norm();
   if (left > kFar)
-    log_warning(
+    context.warning(
         "{}: the scene's cameras are {:.0f} m from this origin: check that the file belongs to the "
         "scene",
         file.string(), left);
@@ -57,25 +56,26 @@ std::optional<LocalFrame> read_geo_offset_beside(const fs::path& scene_path) {
   return LocalFrame{root.at(kKey).vector()};
 }
 
-void write_geo_offset_beside(const fs::path& scene_path, const LocalFrame& frame) {
+void write_geo_offset_beside(const fs::path& scene_path, const LocalFrame& frame,
+                             const Context& context) {
   const fs::path file = geo_offset_beside(scene_path);
   if (frame.is_world()) {
     std::error_code error;
-    if (fs::remove(file, error)) log_info("{} removed: the scene has no offset", file.string());
+    if (fs::remove(file, error)) context.info("{} removed: the scene has no offset", file.string());
     return;
   }
   const Eigen::Vector3d& o = frame.origin;
   write_json(file, {{"version", 1}, {kKey, {o.x(), o.y(), o.z()}}});
 }
 
-LocalFrame enter_local_frame(Scene& scene, const fs::path& scene_path) {
+LocalFrame enter_local_frame(Scene& scene, const fs::path& scene_path, const Context& context) {
   if (const auto frame = read_geo_offset_beside(scene_path)) {
-    warn_if_far(scene, geo_offset_beside(scene_path));
+    warn_if_far(scene, geo_offset_beside(scene_path), context);
     return *frame;
   }
   const LocalFrame frame = frame_of(scene);
   if (frame.is_world()) return frame;
-  log_warning(
+  context.warning(
       "{}: is far from the origin: the output's coordinates are relative to ({}, {}, {}); the "
       "sparse points are float and have a resolution of only {:.2g} m (InterfaceCOLMAP keeps all "
       "digits)",

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "axial/base.h"
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
 #include "scene/decompositions.h"
@@ -24,18 +25,20 @@ std::filesystem::path geo_offset_beside(const std::filesystem::path& scene_path)
 std::optional<LocalFrame> read_geo_offset_beside(const std::filesystem::path& scene_path);
 
 // Writes the origin of `frame` to the file beside the scene. If `frame` is the world, no file is
-// written and an existing file is removed. Error if the file cannot be written. A failure to remove
-// it is ignored.
-void write_geo_offset_beside(const std::filesystem::path& scene_path, const LocalFrame& frame);
+// written and an existing file is removed, which a line of `context` tells. Error if the file
+// cannot be written. A failure to remove it is ignored.
+void write_geo_offset_beside(const std::filesystem::path& scene_path, const LocalFrame& frame,
+                             const Context& context = {});
 
 // Moves a scene that was read from `scene_path` into its local frame and returns this frame.
 //
 // If there is a file beside the scene, the scene is already in the frame that the file states and
-// stays unchanged. A warning is given if the cameras are more than 1e5 m from the origin of this
-// frame. If there is no file, the scene is in world coordinates and is moved into frame_of(scene).
-// If frame_of(scene) is not the world, a warning states that the sparse points, which are float,
-// have lost digits. Errors as for read_geo_offset_beside().
-LocalFrame enter_local_frame(Scene& scene, const std::filesystem::path& scene_path);
+// stays unchanged. Warns through `context` if the cameras are more than 1e5 m from the origin of
+// this frame. If there is no file, the scene is in world coordinates and is moved into
+// frame_of(scene). If frame_of(scene) is not the world, a warning of `context` states that the
+// sparse points, which are float, have lost digits. Errors as for read_geo_offset_beside().
+LocalFrame enter_local_frame(Scene& scene, const std::filesystem::path& scene_path,
+                             const Context& context = {});
 
 // Moves a model from world coordinates into the frame that frame_of() chooses for its camera
 // centres and points, and returns this frame. If the model is near the origin of the world, the

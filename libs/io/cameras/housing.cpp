@@ -5,7 +5,6 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "base/output_name.h"
 #include "io/cameras/calibmar.h"
 #include "private/bytes/text_reader.h"
@@ -25,25 +24,26 @@ bool is_dome(const HousingPort& port) {
 }
 
 // Reads the port `name`, and its standard deviations.
-void read_port(const std::string& name, const JsonPlace& place, Housing& housing) {
+void read_port(const std::string& name, const JsonPlace& place, Housing& housing,
+               const Context& context) {
   if (is_water_surface(place)) {
-    housing.ports[name] = water_surface_from_json(place);
+    housing.ports[name] = water_surface_from_json(place, context);
     return;
   }
   nlohmann::json numbers = place.json;
   if (place.json.is_object()) numbers.erase(kSigma);
   HousingPort& port = housing.ports[name];
-  port = to_housing_port(port_from_json({numbers, place.where}));
+  port = to_housing_port(port_from_json({numbers, place.where}, kLongestGap, context));
   if (!place.has(kSigma)) return;
   const PortSigmas sigmas = sigmas_from_json(place.at(kSigma), is_dome(port));
   if (!sigmas.empty()) housing.sigmas[name] = sigmas;
 }
 
-void read_ports(const JsonPlace& place, Housing& housing) {
+void read_ports(const JsonPlace& place, Housing& housing, const Context& context) {
   for (const std::string& name : place.keys()) {
     if (name == kNone || name.empty())
       fail_in(place.where, "'{}' cannot be the name of a port ('none' means no port)", name);
-    read_port(name, place.at(name), housing);
+    read_port(name, place.at(name), housing, context);
   }
 }
 
@@ -76,8 +76,8 @@ auto by_kind(const HousingPort& port, OfSurface of_surface, OfPort of_port) {
 
 using Port = refractive::Port<double>;
 
-Housing calibmar_housing(const fs::path& path) {
-  const ColmapCamera camera = read_calibmar(path);
+Housing calibmar_housing(const fs::path& path, const Context& context) {
+  const ColmapCamera camera = read_calibmar(path, context);
   if (!camera.port && says_no_port(path)) return {};
   if (!camera.port) fail_in(path, "key 'non_svp_model' is missing");
   return housing_with(to_housing_port(*camera.port));
@@ -153,14 +153,14 @@ void refuse_water_surfaces(const Housing& housing, const fs::path& file) {
 
 namespace {
 
-Housing parse_housing(const fs::path& path) {
-  if (is_calibmar(path)) return calibmar_housing(path);
+Housing parse_housing(const fs::path& path, const Context& context) {
+  if (is_calibmar(path)) return calibmar_housing(path, context);
   const nlohmann::json json = read_json(path);
   const JsonPlace root{json, path.string() + ": housing"};
   root.require_object({"version", "ports", "default", "cameras", "images"});
   root.require_version_1();
   Housing housing;
-  read_ports(root.at("ports"), housing);
+  read_ports(root.at("ports"), housing, context);
   housing.default_port = defined_name(root, "default", housing.ports, "port");
   if (root.has("cameras")) read_cameras(root.at("cameras"), housing);
   if (root.has("images")) housing.images = names_by_image(root.at("images"), housing.ports, "port");
@@ -169,11 +169,11 @@ Housing parse_housing(const fs::path& path) {
 
 }  // namespace
 
-Housing read_housing(const fs::path& path, PortValues values) {
-  Housing housing = parse_housing(path);
+Housing read_housing(const fs::path& path, PortValues values, const Context& context) {
+  Housing housing = parse_housing(path, context);
   if (values == PortValues::checked)
     for (const auto& [name, port] : housing.ports)
-      warn_of_port_values(port, fmt::format("{}: housing.ports.{}", path.string(), name));
+      warn_of_port_values(port, fmt::format("{}: housing.ports.{}", path.string(), name), context);
   return housing;
 }
 
@@ -221,8 +221,9 @@ Housing for_images(const Housing& housing, std::span<const NamedCamera> images,
   return result;
 }
 
-void attach_ports(Scene& scene, const Housing& housing, const std::string& file) {
-  for_each_entry(scene, housing.images, file, "housing.images", [&](SceneImage& image, auto entry) {
+void attach_ports(Scene& scene, const Housing& housing, const std::string& file,
+                  const Context& context) {
+  const UseEntry use = [&](SceneImage& image, auto entry) {
     const bool has_entry = entry != housing.images.end();
     if (!has_entry && !housing.cameras.empty())
       fail_in(file,
@@ -230,8 +231,9 @@ void attach_ports(Scene& scene, const Housing& housing, const std::string& file)
               "an entry for {} under housing.images (InterfaceCOLMAP writes these entries)",
               image.path);
     attach(image, has_entry ? entry->second : housing.default_port, housing, file);
-  });
-  warn_of_ports_in_scene(scene, housing, file);
+  };
+  for_each_entry(scene, housing.images, file, "housing.images", use, context);
+  warn_of_ports_in_scene(scene, housing, file, context);
 }
 
 }  // namespace axial::io

@@ -9,6 +9,7 @@
 #include <string>
 #include <variant>
 
+#include "axial/base.h"
 #include "io/cameras/port_sigmas.h"
 #include "refractive/port.h"
 #include "scene/scene.h"
@@ -89,8 +90,10 @@ enum class PortValues { checked, passed_over };
 // standard deviation that is not possible (sigmas_from_json) or that belongs to a water surface,
 // a dome centre that is not nearer to the camera than 0.9 times the inner radius, a water or glass
 // index below the air index, or a Calibmar file without the key "non_svp_model". A normal whose
-// length differs from 1 by more than 1e-6 is normalised with a warning.
-Housing read_housing(const std::filesystem::path& path, PortValues values = PortValues::checked);
+// length differs from 1 by more than 1e-6 is normalised. Warnings go through `context`, also those
+// of normalised normals.
+Housing read_housing(const std::filesystem::path& path, PortValues values = PortValues::checked,
+                     const Context& context = {});
 
 // Writes a housing file and replaces an existing one. Error that names the file for values of a
 // port that are not possible, a port name that is not defined, or a file that cannot be written.
@@ -120,10 +123,11 @@ Housing for_images(const Housing& housing, std::span<const NamedCamera> images,
 //
 // Errors as for port_at() and for_images(). In addition, an Error if an image has no entry and
 // `housing.cameras` is not empty, because a scene does not contain COLMAP's camera ids.
-// (InterfaceCOLMAP therefore writes entries by image.) Warns of entries that match no image, and of
-// a port if more than half of the views of sparse points through it are not possible (the point is
-// not beyond the port) or lead through more than 25 m of water. All messages start with `file`.
-// Precondition: `housing` is in the frame of `scene` (in_frame in geo_offset.h).
-void attach_ports(Scene& scene, const Housing& housing, const std::string& file);
+// (InterfaceCOLMAP therefore writes entries by image.) Warns through `context` of entries that
+// match no image, and of a port if more than half of the views of sparse points through it are not
+// possible (the point is not beyond the port) or lead through more than 25 m of water. All messages
+// start with `file`. Precondition: `housing` is in the frame of `scene` (in_frame in geo_offset.h).
+void attach_ports(Scene& scene, const Housing& housing, const std::string& file,
+                  const Context& context = {});
 
 }  // namespace axial::io

@@ -4,8 +4,6 @@
 #include <filesystem>
 #include <set>
 
-#include "base/log.h"
-
 namespace axial::io {
 namespace {
 
@@ -69,7 +67,7 @@ ByImage entries_for(const std::vector<std::string>& names, const std::vector<std
 }
 
 void for_each_entry(Scene& scene, const ByImage& entries, const std::string& file,
-                    const std::string& key, const UseEntry& use) {
+                    const std::string& key, const UseEntry& use, const Context& context) {
   std::vector<std::string> names;
   for (const SceneImage& image : scene.images)
     names.push_back(std::filesystem::path(image.path).generic_string());
@@ -80,7 +78,7 @@ void for_each_entry(Scene& scene, const ByImage& entries, const std::string& fil
     use(scene.images[i], found[i]);
   }
   for (const auto& [name, unused] : entries)
-    if (!used.contains(name)) log_warning("{}: no image matches images.{}", file, name);
+    if (!used.contains(name)) context.warning("{}: no image matches images.{}", file, name);
 }
 
 }  // namespace axial::io

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "base/output_name.h"
 #include "private/cameras/image_names.h"
 #include "private/cameras/port_json.h"
@@ -116,26 +115,26 @@ SceneLenses lenses_of(const Scene& scene, const fs::path& scene_path) {
   return lenses;
 }
 
-void attach_lenses(Scene& scene, const SceneLenses& lenses, const fs::path& file) {
-  for_each_entry(scene, lenses.images, file.string(), "lenses.images",
-                 [&](SceneImage& image, auto entry) {
-                   if (!image.calibrated) return;
-                   const std::string& name =
-                       entry == lenses.images.end() ? lenses.default_lens : entry->second;
-                   image.camera.distortion.reset();
-                   if (name == kNone) return;
-                   image.camera.distortion = lenses.lenses.at(name);
-                   if (!images_anything(image.camera))
-                     fail_in(file, "lenses.{}: is not a valid lens for {}: it mirrors the image",
-                             name, image.path);
-                 });
+void attach_lenses(Scene& scene, const SceneLenses& lenses, const fs::path& file,
+                   const Context& context) {
+  const UseEntry use = [&](SceneImage& image, auto entry) {
+    if (!image.calibrated) return;
+    const std::string& name = entry == lenses.images.end() ? lenses.default_lens : entry->second;
+    image.camera.distortion.reset();
+    if (name == kNone) return;
+    image.camera.distortion = lenses.lenses.at(name);
+    if (!images_anything(image.camera))
+      fail_in(file, "lenses.{}: is not a valid lens for {}: it mirrors the image", name,
+              image.path);
+  };
+  for_each_entry(scene, lenses.images, file.string(), "lenses.images", use, context);
 }
 
-bool attach_lenses_beside(Scene& scene, const fs::path& scene_path) {
+bool attach_lenses_beside(Scene& scene, const fs::path& scene_path, const Context& context) {
   const fs::path file = lenses_beside(scene_path);
   std::error_code error;
   if (!fs::exists(file, error)) return false;
-  attach_lenses(scene, read_lenses(file), file);
+  attach_lenses(scene, read_lenses(file), file, context);
   return std::ranges::any_of(
       scene.images, [](const SceneImage& image) { return image.camera.distortion.has_value(); });
 }

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "axial/base.h"
 #include "refractive/lens_distortion.h"
 #include "scene/scene.h"
 
@@ -34,14 +35,18 @@ void write_lenses(const std::filesystem::path& path, const SceneLenses& lenses);
 // Attaches lenses to the calibrated images of `scene`. The entry of an image in `lenses.images` is
 // the longest entry that is the end of the image's path in whole path components. An entry that is
 // the whole path of another image does not count. An image without an entry gets
-// `lenses.default_lens`. Warns of entries that match no image. All messages start with `file`.
+// `lenses.default_lens`. Warns through `context` of entries that match no image. All messages start
+// with `file`.
 // Precondition: each name in `lenses` is defined or "none". Error if several images share an entry,
 // or if a lens does not image a direction at the image centre, or mirrors the image there.
-void attach_lenses(Scene& scene, const SceneLenses& lenses, const std::filesystem::path& file);
+void attach_lenses(Scene& scene, const SceneLenses& lenses, const std::filesystem::path& file,
+                   const Context& context = {});
 
 // Attaches the lenses of the file beside the scene, if there is one. Returns true if the file
-// exists and any image has a distorted lens. Errors as for read_lenses() and attach_lenses().
-bool attach_lenses_beside(Scene& scene, const std::filesystem::path& scene_path);
+// exists and any image has a distorted lens. Warnings and errors as for read_lenses() and
+// attach_lenses().
+bool attach_lenses_beside(Scene& scene, const std::filesystem::path& scene_path,
+                          const Context& context = {});
 
 // Returns the lenses of the calibrated images of `scene`, for the file beside `scene_path`. The
 // lenses are named "lens_1", "lens_2" and so on. Readers of the file assign a lens to an image by

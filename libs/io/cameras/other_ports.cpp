@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "private/colmap/colmap_parts.h"
 
 namespace axial::io {
@@ -62,11 +61,13 @@ std::string image_with_other_port(const Housing& taken, const Housing& other,
 }
 
 void warn_of_other_ports(const Housing& taken, const std::string& taken_from, const Housing& other,
-                         const std::string& other_from, const ColmapModel& model) {
+                         const std::string& other_from, const ColmapModel& model,
+                         const Context& context) {
   const std::string image = image_with_other_port(taken, other, model);
   if (!image.empty())
-    log_warning("The ports of {} are used; the ports of {} differ and are ignored, first for {}",
-                taken_from, other_from, image);
+    context.warning(
+        "The ports of {} are used; the ports of {} differ and are ignored, first for {}",
+        taken_from, other_from, image);
 }
 
 bool gives_no_image_a_port(const Housing& housing, const ColmapModel& model) {
@@ -76,21 +77,22 @@ bool gives_no_image_a_port(const Housing& housing, const ColmapModel& model) {
 }
 
 void warn_of_housing_beside(const Scene& scene, const fs::path& scene_path, const Housing& taken,
-                            const fs::path& file) {
+                            const fs::path& file, const Context& context) {
   const fs::path beside = housing_beside(scene_path);
   std::error_code error;
   if (!fs::exists(beside, error) || fs::equivalent(beside, file, error)) return;
   Housing other;
   try {
-    other = read_housing(beside, PortValues::passed_over);
+    other = read_housing(beside, PortValues::passed_over, context);
   } catch (const Error& unreadable) {
-    return log_warning("{}: is not used ({} is used instead), and cannot be read: {}",
-                       beside.string(), file.string(), unreadable.text());
+    return context.warning("{}: is not used ({} is used instead), and cannot be read: {}",
+                           beside.string(), file.string(), unreadable.text());
   }
   for (const SceneImage& image : scene.images)
     if (!same(port_by_path(taken, image.path), port_by_path(other, image.path)))
-      return log_warning("{}: is not used ({} is used instead), and its ports differ, first for {}",
-                         beside.string(), file.string(), image.path);
+      return context.warning(
+          "{}: is not used ({} is used instead), and its ports differ, first for {}",
+          beside.string(), file.string(), image.path);
 }
 
 }  // namespace axial::io

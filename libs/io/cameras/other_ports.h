@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "axial/base.h"
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
 #include "scene/scene.h"
@@ -23,20 +24,22 @@ bool same_port(const HousingPort& a, const HousingPort& b);
 std::string image_with_other_port(const Housing& taken, const Housing& other,
                                   const ColmapModel& model);
 
-// Warns if image_with_other_port finds an image. The warning names the image and states that the
-// ports of `taken_from` are used and those of `other_from` are ignored. `taken_from` and
-// `other_from` are words or file names for the user.
+// Warns through `context` if image_with_other_port finds an image. The warning names the image and
+// states that the ports of `taken_from` are used and those of `other_from` are ignored.
+// `taken_from` and `other_from` are words or file names for the user.
 void warn_of_other_ports(const Housing& taken, const std::string& taken_from, const Housing& other,
-                         const std::string& other_from, const ColmapModel& model);
+                         const std::string& other_from, const ColmapModel& model,
+                         const Context& context);
 
 // True if `housing` has ports but none of the model's images gets one.
 bool gives_no_image_a_port(const Housing& housing, const ColmapModel& model);
 
-// Warns if the housing file beside `scene_path` cannot be read, or if it gives an image of the
-// scene another port than `taken`, or a port where `taken` gives none, or the reverse. `file` is
-// the file from which `taken` was read. There is no warning if no file lies beside `scene_path`, or
-// if the file beside `scene_path` is `file`.
+// Warns through `context` if the housing file beside `scene_path` cannot be read, or if it gives an
+// image of the scene another port than `taken`, or a port where `taken` gives none, or the reverse.
+// `file` is the file from which `taken` was read. There is no warning if no file lies beside
+// `scene_path`, or if the file beside `scene_path` is `file`.
 void warn_of_housing_beside(const Scene& scene, const std::filesystem::path& scene_path,
-                            const Housing& taken, const std::filesystem::path& file);
+                            const Housing& taken, const std::filesystem::path& file,
+                            const Context& context);
 
 }  // namespace axial::io

@@ -7,7 +7,6 @@
 #include <span>
 
 #include "base/error.h"
-#include "base/log.h"
 
 namespace axial::io {
 namespace {
@@ -29,8 +28,8 @@ void require_unit(const Eigen::Vector3d& normal, const std::string& where) {
     fail("{}.normal has length {}, expected 1", where, normal.norm());
 }
 
-Eigen::Vector3d unit_normal(const JsonPlace& place) {
-  return io::unit_normal(place.vector(), place.where);
+Eigen::Vector3d unit_normal(const JsonPlace& place, const Context& context) {
+  return io::unit_normal(place.vector(), place.where, context);
 }
 
 Json to_json(const Eigen::Vector3d& v) {
@@ -66,13 +65,13 @@ void check_glass(const Port& port, const std::string& where) {
          port.n_water);
 }
 
-refractive::FlatPort<double> flat_from_json(const JsonPlace& place) {
+refractive::FlatPort<double> flat_from_json(const JsonPlace& place, const Context& context) {
   place.require_object(
       {"type", "distance_m", "thickness_m", "normal", "n_air", "n_glass", "n_water"});
   refractive::FlatPort<double> port;
   port.distance = place.number("distance_m");
   read_glass(place, port);
-  if (place.has("normal")) port.normal = unit_normal(place.at("normal"));
+  if (place.has("normal")) port.normal = unit_normal(place.at("normal"), context);
   return port;
 }
 
@@ -123,17 +122,19 @@ void check(const refractive::DomePort<double>& port, const std::string& where,
 
 }  // namespace
 
-Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where) {
+Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where,
+                            const Context& context) {
   const double length = n.stableNorm();
   if (!(length > 1e-6 && std::isfinite(length)))
     fail("{} is [{},{},{}], which is not a direction", where, n.x(), n.y(), n.z());
-  if (std::abs(length - 1) > 1e-6) log_warning("{} has length {}: normalised", where, length);
+  if (std::abs(length - 1) > 1e-6) context.warning("{} has length {}: normalised", where, length);
   // A normal that is of unit length up to rounding stays unchanged, so that reading and writing a
   // file does not change it.
   return std::abs(length - 1) > 1e-15 ? Eigen::Vector3d(n / length) : n;
 }
 
-refractive::Port<double> port_from_json(const JsonPlace& place, double longest_gap) {
+refractive::Port<double> port_from_json(const JsonPlace& place, double longest_gap,
+                                        const Context& context) {
   if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
   const std::string type = place.text("type");
   if (type != "flat" && type != "dome")
@@ -141,7 +142,7 @@ refractive::Port<double> port_from_json(const JsonPlace& place, double longest_g
          type);
   refractive::Port<double> port;
   if (type == "flat")
-    port = flat_from_json(place);
+    port = flat_from_json(place, context);
   else
     port = dome_from_json(place);
   std::visit([&](const auto& kind) { check(kind, place.where, longest_gap); }, port);
@@ -160,10 +161,10 @@ bool is_water_surface(const JsonPlace& place) {
   return place.has("type") && place.at("type").json == "water-surface";
 }
 
-WaterSurface water_surface_from_json(const JsonPlace& place) {
+WaterSurface water_surface_from_json(const JsonPlace& place, const Context& context) {
   place.require_object({"type", "normal", "point_m", "n_air", "n_water"});
   WaterSurface surface;
-  surface.normal = unit_normal(place.at("normal"));
+  surface.normal = unit_normal(place.at("normal"), context);
   surface.point = place.at("point_m").vector();
   if (place.has("n_air")) surface.n_air = place.number("n_air");
   surface.n_water = place.number("n_water");

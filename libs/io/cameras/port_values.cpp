@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/log.h"
 #include "private/colmap/colmap_parts.h"
 
 namespace axial::io {
@@ -28,9 +27,10 @@ constexpr double kMostDegrees = 30;
 constexpr double kFarthest = 25;
 
 void check_range(double value, const char* field, double least, double most,
-                 const std::string& where, const char* of) {
+                 const std::string& where, const char* of, const Context& context) {
   if (!(value >= least && value <= most))
-    log_warning("{}.{} is {}, but {} has {:.2f} to {:.2f}", where, field, value, of, least, most);
+    context.warning("{}.{} is {}, but {} has {:.2f} to {:.2f}", where, field, value, of, least,
+                    most);
 }
 
 template <class Port>
@@ -39,30 +39,32 @@ bool does_nothing(const Port& port) {
 }
 
 template <class Port>
-void check_indices(const Port& port, const std::string& where) {
-  check_range(port.n_glass, "n_glass", kLeastGlass, kMostGlass, where, "the glass of ports");
-  check_range(port.n_water, "n_water", kLeastWater, kMostWater, where, "water");
+void check_indices(const Port& port, const std::string& where, const Context& context) {
+  check_range(port.n_glass, "n_glass", kLeastGlass, kMostGlass, where, "the glass of ports",
+              context);
+  check_range(port.n_water, "n_water", kLeastWater, kMostWater, where, "water", context);
 }
 
 struct Values {
   const std::string& where;
+  const Context& context;
 
   void operator()(const FlatPort<double>& port) const {
     if (does_nothing(port)) return;
-    check_indices(port, where);
+    check_indices(port, where, context);
     const double degrees =
         std::acos(std::clamp(port.normal.z(), -1.0, 1.0)) * 180 / std::numbers::pi;
     if (degrees > kMostDegrees)
-      log_warning(
+      context.warning(
           "{}.normal is [{}, {}, {}], {:.0f} degrees from the optical axis, but ports are "
           "mounted within {:.0f}",
           where, port.normal.x(), port.normal.y(), port.normal.z(), degrees, kMostDegrees);
   }
   void operator()(const DomePort<double>& port) const {
-    if (!does_nothing(port)) check_indices(port, where);
+    if (!does_nothing(port)) check_indices(port, where, context);
   }
   void operator()(const WaterSurface& surface) const {
-    check_range(surface.n_water, "n_water", kLeastWater, kMostWater, where, "water");
+    check_range(surface.n_water, "n_water", kLeastWater, kMostWater, where, "water", context);
   }
 };
 
@@ -99,6 +101,7 @@ struct Observed {
 struct SceneCheck {
   const Observed& seen;
   const std::string& where;
+  const Context& context;
 
   void operator()(const FlatPort<double>& port) const {
     glass("distance_m", port.distance, port.thickness);
@@ -109,7 +112,7 @@ struct SceneCheck {
   // Does not print the point, because it may be in the scene's local frame and not as in the file.
   void operator()(const WaterSurface&) const {
     if (seen.is_half(seen.before_water))
-      log_warning(
+      context.warning(
           "{}.point_m or normal is wrong: {} of {} observations are of sparse points above that "
           "water surface",
           where, seen.before_water, seen.all);
@@ -119,11 +122,11 @@ struct SceneCheck {
   void glass(const char* field, double length, double thickness) const {
     const char* const hint = "check that port and poses are in metres";
     if (seen.is_half(seen.before_glass))
-      log_warning(
+      context.warning(
           "{}.{} is {}, but {} of {} observations are of sparse points before the glass: {}", where,
           field, length, seen.before_glass, seen.all, hint);
     else if (seen.is_half(seen.before_water))
-      log_warning(
+      context.warning(
           "{}.thickness_m is {}, but {} of {} observations are of sparse points inside or before "
           "the glass: {}",
           where, thickness, seen.before_water, seen.all, hint);
@@ -132,7 +135,7 @@ struct SceneCheck {
 
   void far(const std::string& what) const {
     if (seen.is_half(seen.far))
-      log_warning(
+      context.warning(
           "{} {} of {} observations are of sparse points more than {:.0f} m of water away: check "
           "that the poses are in metres",
           what, seen.far, seen.all, kFarthest);
@@ -141,19 +144,22 @@ struct SceneCheck {
 
 }  // namespace
 
-void warn_of_port_values(const HousingPort& port, const std::string& where) {
-  std::visit(Values{where}, port);
+void warn_of_port_values(const HousingPort& port, const std::string& where,
+                         const Context& context) {
+  std::visit(Values{where, context}, port);
 }
 
-void warn_of_port_values(std::span<const ColmapCamera> cameras, const std::string& file) {
+void warn_of_port_values(std::span<const ColmapCamera> cameras, const std::string& file,
+                         const Context& context) {
   std::set<std::pair<int, PortNumbers>> seen;
   for (const ColmapCamera& camera : cameras)
     if (camera.port && seen.emplace(port_number(*camera.port), port_numbers(*camera.port)).second)
       warn_of_port_values(to_housing_port(*camera.port),
-                          fmt::format("{}: camera {}: port", file, camera.id));
+                          fmt::format("{}: camera {}: port", file, camera.id), context);
 }
 
-void warn_of_ports_in_scene(const Scene& scene, const Housing& housing, const std::string& file) {
+void warn_of_ports_in_scene(const Scene& scene, const Housing& housing, const std::string& file,
+                            const Context& context) {
   std::map<std::string, Observed> ports;
   std::vector<Observed*> of_image(scene.images.size(), nullptr);
   for (std::size_t i = 0; i < scene.images.size(); ++i)
@@ -172,7 +178,7 @@ void warn_of_ports_in_scene(const Scene& scene, const Housing& housing, const st
   for (const auto& [name, seen] : ports)
     if (const auto port = housing.ports.find(name); port != housing.ports.end()) {
       const std::string where = fmt::format("{}: housing.ports.{}", file, name);
-      std::visit(SceneCheck{seen, where}, port->second);
+      std::visit(SceneCheck{seen, where, context}, port->second);
     }
 }
 

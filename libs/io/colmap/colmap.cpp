@@ -8,7 +8,6 @@
 #include <unordered_set>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "io/cameras/calibmar.h"
 #include "private/cameras/port_values.h"
 #include "private/colmap/colmap_parts.h"
@@ -90,7 +89,7 @@ void check_references(const ColmapModel& model, const std::string& where) {
 
 }  // namespace
 
-fs::path find_colmap_model(const fs::path& folder) {
+fs::path find_colmap_model(const fs::path& folder, const Context& context) {
   const std::array<fs::path, 3> places{folder / "sparse", folder / "sparse" / "0", folder};
   auto taken = std::ranges::find_if(places, holds_any_model);
   // If no model is complete, the reader's message says which files are missing.
@@ -99,31 +98,31 @@ fs::path find_colmap_model(const fs::path& folder) {
     fail_in(folder, "no COLMAP model: no cameras.txt or cameras.bin in {}, {} or {}",
             places[0].string(), places[1].string(), places[2].string());
   if (const auto others = other_models(places, *taken); !others.empty())
-    log_info("{}: this model is read; ignored: {}", taken->string(), fmt::join(others, ", "));
+    context.info("{}: this model is read; ignored: {}", taken->string(), fmt::join(others, ", "));
   return *taken;
 }
 
-ColmapModel read_colmap_model(const fs::path& folder) {
+ColmapModel read_colmap_model(const fs::path& folder, const Context& context) {
   const ModelForm form = model_form(folder);
   ColmapModel model;
-  model.cameras = kCameras.read(folder, form);
-  model.images = kImages.read(folder, form);
-  model.points = kPoints.read(folder, form);
+  model.cameras = kCameras.read(folder, form, context);
+  model.images = kImages.read(folder, form, context);
+  model.points = kPoints.read(folder, form, context);
   const std::string where = folder.string();
   require_unique_ids(model.cameras, "camera", where);
   require_unique_ids(model.images, "image", where);
   require_unique_ids(model.points, "3D point", where);
   require_unique_names(model, where);
   check_references(model, where);
-  warn_of_ignored_files(folder, form, model);
-  warn_of_port_values(model.cameras, part_file(folder, "cameras", form).string());
+  warn_of_ignored_files(folder, form, model, context);
+  warn_of_port_values(model.cameras, part_file(folder, "cameras", form).string(), context);
   return model;
 }
 
-std::vector<ColmapCamera> read_colmap_cameras(const fs::path& path) {
+std::vector<ColmapCamera> read_colmap_cameras(const fs::path& path, const Context& context) {
   if (is_calibmar(path)) {
-    const std::vector<ColmapCamera> camera{read_calibmar(path)};
-    warn_of_port_values(camera, path.string());
+    const std::vector<ColmapCamera> camera{read_calibmar(path, context)};
+    warn_of_port_values(camera, path.string(), context);
     return camera;
   }
   std::error_code error;
@@ -132,11 +131,12 @@ std::vector<ColmapCamera> read_colmap_cameras(const fs::path& path) {
                          : path.extension() == ".bin" ? ModelForm::binary
                                                       : ModelForm::text;
   const fs::path file = is_folder ? part_file(path, "cameras", form) : path;
-  const std::vector<ColmapCamera> cameras =
-      form == ModelForm::binary ? read_cameras_binary(file) : read_cameras_text(file);
+  const std::vector<ColmapCamera> cameras = form == ModelForm::binary
+                                                ? read_cameras_binary(file, context)
+                                                : read_cameras_text(file, context);
   require_unique_ids(cameras, "camera", path.string());
-  if (is_folder) warn_of_ignored_cameras(path, form, cameras);
-  warn_of_port_values(cameras, file.string());
+  if (is_folder) warn_of_ignored_cameras(path, form, cameras, context);
+  warn_of_port_values(cameras, file.string(), context);
   return cameras;
 }
 

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "axial/base.h"
 #include "axial/scene.h"
 #include "refractive/port.h"
 #include "scene/scene.h"
@@ -77,9 +78,10 @@ struct ColmapModel {
 // Returns the folder that holds the model of `folder`. The candidates are `folder`/sparse,
 // `folder`/sparse/0 and `folder`, in this order. The result is the first candidate with a complete
 // model (cameras, images and points3D, all .bin or all .txt), or if no model is complete, the first
-// candidate with a cameras file. The log names other complete models. Error that lists the
-// candidates if no candidate has a cameras file.
-std::filesystem::path find_colmap_model(const std::filesystem::path& folder);
+// candidate with a cameras file. A line of `context` names other complete models. Error that lists
+// the candidates if no candidate has a cameras file.
+std::filesystem::path find_colmap_model(const std::filesystem::path& folder,
+                                        const Context& context = {});
 
 // Reads the cameras, images and points3D of COLMAP or COLMAP-Underwater. A binary cameras file does
 // not state which of the two programs wrote it. It is read as a file of COLMAP, and if this fails,
@@ -87,19 +89,20 @@ std::filesystem::path find_colmap_model(const std::filesystem::path& folder);
 // complete, otherwise the text model. If the folder also holds files in the other form, a warning
 // names those whose contents differ from the model that is read. All camera models of COLMAP are
 // accepted, and METASHAPE_FISHEYE of COLMAP-Underwater. Unusual values of ports give warnings
-// (PortValues in housing.h).
+// (PortValues in housing.h). Warnings go through `context`.
 //
 // Error that names the file or the folder for an unknown camera model, a wrong number of
 // parameters, a value that is not finite, a reference to a camera, image or point that does not
 // exist, an id that occurs twice, two images with the same name, a focal_sigma that is not possible
 // or belongs to no camera, a truncated file, or a folder without a complete model.
-ColmapModel read_colmap_model(const std::filesystem::path& folder);
+ColmapModel read_colmap_model(const std::filesystem::path& folder, const Context& context = {});
 
 // Reads only the cameras. `path` is the folder of a model, a text file or a .bin file with the
 // cameras of COLMAP or COLMAP-Underwater, or a file of Calibmar (is_calibmar in calibmar.h), with
 // its port. In a folder, the form of a complete model is read, binary before text. A folder without
-// a complete model needs only a cameras file. Errors as for read_colmap_model.
-std::vector<ColmapCamera> read_colmap_cameras(const std::filesystem::path& path);
+// a complete model needs only a cameras file. Warnings and errors as for read_colmap_model.
+std::vector<ColmapCamera> read_colmap_cameras(const std::filesystem::path& path,
+                                              const Context& context = {});
 
 // Error if `folder` holds a complete binary model, because readers would read the binary model
 // instead of a text model in the same folder.

@@ -21,17 +21,18 @@ void require_finite(double value, const char* field, std::uint64_t id, const std
   if (!std::isfinite(value)) fail_in(file, "{} of record {} is {}", field, id, value);
 }
 
-std::optional<refractive::Port<double>> parse_port(ByteReader& in, const ColmapCamera& camera) {
+std::optional<refractive::Port<double>> parse_port(ByteReader& in, const ColmapCamera& camera,
+                                                   const Context& context) {
   const auto number = in.read<std::int32_t>("port");
   if (number == -1) return std::nullopt;
   const std::string where = fmt::format("{}: camera {}", in.file(), camera.id);
   if (port_word(number).empty()) fail("{} has the unknown port number {}", where, number);
   PortNumbers numbers;
   in.read(std::span(numbers), "port parameters");
-  return port_from(port_word(number), numbers, where);
+  return port_from(port_word(number), numbers, where, context);
 }
 
-ColmapCamera parse_camera(ByteReader& in, Dialect dialect) {
+ColmapCamera parse_camera(ByteReader& in, Dialect dialect, const Context& context) {
   ColmapCamera camera;
   camera.id = in.read<std::uint32_t>("camera id");
   const auto model = in.read<std::int32_t>("camera model");
@@ -43,7 +44,7 @@ ColmapCamera parse_camera(ByteReader& in, Dialect dialect) {
   camera.params.resize(static_cast<std::size_t>(colmap_parameter_count(camera.model)));
   in.read(std::span(camera.params), "camera parameters");
   check_colmap_camera(camera, in.file());
-  if (dialect == Dialect::underwater) camera.port = parse_port(in, camera);
+  if (dialect == Dialect::underwater) camera.port = parse_port(in, camera, context);
   return camera;
 }
 
@@ -96,10 +97,10 @@ std::vector<T> read_records(const fs::path& path, std::size_t min_bytes, const c
 }
 
 std::vector<ColmapCamera> cameras_from(const std::string& bytes, const fs::path& path,
-                                       Dialect dialect) {
+                                       Dialect dialect, const Context& context) {
   ByteReader in(bytes, path.string());
   std::vector<ColmapCamera> cameras(in.count(kMinCamera, "cameras"));
-  for (ColmapCamera& camera : cameras) camera = parse_camera(in, dialect);
+  for (ColmapCamera& camera : cameras) camera = parse_camera(in, dialect, context);
   in.require_end();
   return cameras;
 }
@@ -171,13 +172,13 @@ std::string points_as_bytes(const ColmapModel& model) {
 // The file does not name its dialect. If a file of one dialect is read as the other, the reader is
 // misaligned after the first camera. It then finds unknown model numbers, or does not end where the
 // file ends.
-std::vector<ColmapCamera> read_cameras_binary(const fs::path& path) {
+std::vector<ColmapCamera> read_cameras_binary(const fs::path& path, const Context& context) {
   const std::string bytes = read_file(path);
   try {
-    return cameras_from(bytes, path, Dialect::colmap);
+    return cameras_from(bytes, path, Dialect::colmap, context);
   } catch (const Error&) {
     try {
-      return cameras_from(bytes, path, Dialect::underwater);
+      return cameras_from(bytes, path, Dialect::underwater, context);
     } catch (const Error&) {
     }
     throw;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "private/colmap/colmap_parts.h"
 
 namespace axial::io {
@@ -81,9 +80,9 @@ bool same_part(const std::vector<T>& a, const std::vector<T>& b) {
 // True if the file of a part in `form` differs from `items`.
 template <class T>
 bool differs(const fs::path& folder, ModelForm form, const ModelPart<T>& part,
-             const std::vector<T>& items) {
+             const std::vector<T>& items, const Context& context) {
   try {
-    return !same_part(part.read(folder, form), items);
+    return !same_part(part.read(folder, form, context), items);
   } catch (const Error&) {
     return true;
   }
@@ -93,21 +92,24 @@ bool differs(const fs::path& folder, ModelForm form, const ModelPart<T>& part,
 struct IgnoredFiles {
   const fs::path& folder;
   ModelForm read;
+  const Context& context;
   std::vector<std::string> used = {}, ignored = {};
 
   template <class T>
   void add(const ModelPart<T>& part, const std::vector<T>& items) {
     const ModelForm other = other_than(read);
-    if (!has_part(folder, part.name, other) || !differs(folder, other, part, items)) return;
+    if (!has_part(folder, part.name, other) || !differs(folder, other, part, items, context))
+      return;
     used.push_back(part_file(folder, part.name, read).filename().string());
     ignored.push_back(part_file(folder, part.name, other).filename().string());
   }
 
   void warn() const {
     if (used.empty()) return;
-    log_warning("{}: {} {} read, as in COLMAP; ignored: {}, which {} from {}", folder.string(),
-                fmt::join(used, ", "), used.size() == 1 ? "is" : "are", fmt::join(ignored, ", "),
-                used.size() == 1 ? "differs" : "differ", used.size() == 1 ? "it" : "them");
+    context.warning("{}: {} {} read, as in COLMAP; ignored: {}, which {} from {}", folder.string(),
+                    fmt::join(used, ", "), used.size() == 1 ? "is" : "are",
+                    fmt::join(ignored, ", "), used.size() == 1 ? "differs" : "differ",
+                    used.size() == 1 ? "it" : "them");
   }
 };
 
@@ -144,14 +146,15 @@ ModelForm cameras_form(const fs::path& folder) {
 }
 
 void warn_of_ignored_cameras(const fs::path& folder, ModelForm read,
-                             const std::vector<ColmapCamera>& cameras) {
-  IgnoredFiles ignored{folder, read};
+                             const std::vector<ColmapCamera>& cameras, const Context& context) {
+  IgnoredFiles ignored{folder, read, context};
   ignored.add(kCameras, cameras);
   ignored.warn();
 }
 
-void warn_of_ignored_files(const fs::path& folder, ModelForm read, const ColmapModel& model) {
-  IgnoredFiles ignored{folder, read};
+void warn_of_ignored_files(const fs::path& folder, ModelForm read, const ColmapModel& model,
+                           const Context& context) {
+  IgnoredFiles ignored{folder, read, context};
   ignored.add(kCameras, model.cameras);
   ignored.add(kImages, model.images);
   ignored.add(kPoints, model.points);

@@ -9,7 +9,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/first_error.h"
-#include "base/log.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
 #include "io/images/image.h"
@@ -105,20 +104,22 @@ void write_one(const ColmapMasks& masks, MaskedPhotograph& photograph) {
   write_png(file, kept);
 }
 
-void tell(const ColmapMasks& masks, std::span<const MaskedPhotograph> photographs) {
+void tell(const ColmapMasks& masks, std::span<const MaskedPhotograph> photographs,
+          const Context& context) {
   double left_out = 0;
   for (const MaskedPhotograph& one : photographs)
     left_out += static_cast<double>(one.left_out) / one.size.area();
   const double percent = 100 * left_out / static_cast<double>(photographs.size());
-  log_info("{}: {} masks, which leave out {:.1f} % of the pixels", masks.output.string(),
-           photographs.size(), percent);
+  context.info("{}: {} masks, which leave out {:.1f} % of the pixels", masks.output.string(),
+               photographs.size(), percent);
   if (left_out == 0)
-    log_warning("{} {}: no mask has this label", setting("ignore_mask_label"), masks.label);
+    context.warning("{} {}: no mask has this label", setting("ignore_mask_label"), masks.label);
 }
 
 }  // namespace
 
-std::size_t write_colmap_masks(const ColmapMasks& masks, const ProgressSink& progress) {
+std::size_t write_colmap_masks(const ColmapMasks& masks, const ProgressSink& progress,
+                               const Context& context) {
   refuse_masks_among_photographs(masks);
   std::vector<MaskedPhotograph> photographs = photographs_in(masks.images);
   choose_mask_files(masks, photographs);
@@ -130,7 +131,7 @@ std::size_t write_colmap_masks(const ColmapMasks& masks, const ProgressSink& pro
     written.add();
   });
   error.rethrow();
-  tell(masks, photographs);
+  tell(masks, photographs, context);
   return photographs.size();
 }
 

@@ -27,12 +27,13 @@ struct ColmapMasks {
 // is `output`/dive/a.jpg.png: grey, 8 bits, in the size of the photograph, 0 (no features) at
 // pixels whose nearest label is `label`, else 255. This is COLMAP's form (ImageReader.mask_path),
 // and find_masks() with the folder `output` and the label 0 gives the same pixels. Returns the
-// number of masks. Warns if no mask has the label, and tells the share of the pixels that are left
-// out.
+// number of masks. Warns through `context` if no mask has the label, and tells it the share of the
+// pixels that are left out.
 //
 // Error if `images` has no photograph, a photograph has no mask, a mask cannot be read or has
 // another aspect ratio than its photograph, a mask that is read would be replaced, or `output` is
 // `images` or a folder in it: COLMAP and this function would take the masks for photographs.
-std::size_t write_colmap_masks(const ColmapMasks& masks, const ProgressSink& progress = {});
+std::size_t write_colmap_masks(const ColmapMasks& masks, const ProgressSink& progress = {},
+                               const Context& context = {});
 
 }  // namespace axial::io

@@ -49,11 +49,12 @@ PortNumbers port_numbers(const refractive::Port<double>& port) {
 }
 
 refractive::Port<double> port_from(std::string_view word, const PortNumbers& v,
-                                   const std::string& where) {
+                                   const std::string& where, const Context& context) {
   const Eigen::Vector3d first(v[0], v[1], v[2]);
   refractive::Port<double> port;
   if (word == kWords[0])
-    port = refractive::FlatPort<double>{unit_normal(first, where), v[3], v[4], v[5], v[6], v[7]};
+    port = refractive::FlatPort<double>{
+        unit_normal(first, where, context), v[3], v[4], v[5], v[6], v[7]};
   else if (word == kWords[1])
     port = refractive::DomePort<double>{first, v[3], v[4], v[5], v[6], v[7]};
   else

@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "base/first_error.h"
-#include "base/log.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
 #include "io/colmap/colmap_lens.h"
@@ -32,20 +31,21 @@ struct ImportedCamera {
 
 // Keeps the distorted lens. Warns if it does not cover its whole image.
 void keep_lens(const ColmapCamera& from, const refractive::LensDistortion<double>& distortion,
-               const fs::path& model_folder, CameraModel& camera) {
+               const fs::path& model_folder, CameraModel& camera, const Context& context) {
   camera.distortion = distortion;
   const auto lens = distorted_lens<double>(camera);
   if (!(lens.field > 0))
     fail_in(model_folder, "camera {}: the distortion of its {} lens mirrors the image", from.id,
             from.model);
   if (!lens.shows_all(camera.width, camera.height))
-    log_warning(
+    context.warning(
         "{}: camera {} ({}): its camera model is not defined up to the corners of the image; "
         "pixels outside its range are not matched",
         model_folder.string(), from.id, from.model);
 }
 
-ImportedCamera import_camera(const ColmapCamera& camera, const ColmapImport& import) {
+ImportedCamera import_camera(const ColmapCamera& camera, const ColmapImport& import,
+                             const Context& context) {
   const fs::path& model_folder = import.model_folder;
   constexpr std::uint64_t kLargest = 1u << 16;
   if (camera.width == 0 || camera.height == 0 || camera.width > kLargest ||
@@ -60,7 +60,7 @@ ImportedCamera import_camera(const ColmapCamera& camera, const ColmapImport& imp
   const auto distortion = lens_distortion(in_air);
   const bool resampled = !lens && (import.undistort || !distortion);
   if (!lens && !import.undistort && !distortion)
-    log_info(
+    context.info(
         "camera {} ({}): images are undistorted, because this camera model cannot be matched "
         "directly",
         camera.id, camera.model);
@@ -71,19 +71,20 @@ ImportedCamera import_camera(const ColmapCamera& camera, const ColmapImport& imp
     fail_in(model_folder, "camera {}: focal length ({}, {}) is not positive", camera.id, l.fx,
             l.fy);
   imported.resampled = resampled;
-  if (!lens && !resampled) keep_lens(camera, *distortion, model_folder, imported.camera);
+  if (!lens && !resampled) keep_lens(camera, *distortion, model_folder, imported.camera, context);
   return imported;
 }
 
 std::map<std::uint32_t, ImportedCamera> import_cameras(const ColmapModel& model,
                                                        const ColmapImport& import,
-                                                       const ProgressSink& progress) {
+                                                       const ProgressSink& progress,
+                                                       const Context& context) {
   std::set<std::uint32_t> used;
   for (const ColmapImage& image : model.images) used.insert(image.camera);
   std::map<std::uint32_t, ImportedCamera> imported;
   for (const ColmapCamera& camera : model.cameras) {
     if (!used.contains(camera.id)) continue;
-    imported.emplace(camera.id, import_camera(camera, import));
+    imported.emplace(camera.id, import_camera(camera, import, context));
     if (progress) progress(imported.size(), used.size());
   }
   return imported;
@@ -105,14 +106,15 @@ void check_mask(const fs::path& mask, const CameraModel& camera) {
 }
 
 // The masks of the images that need to be undistorted; empty for other images.
-std::vector<fs::path> masks_to_undistort(const Scene& scene, const std::vector<bool>& resampled) {
+std::vector<fs::path> masks_to_undistort(const Scene& scene, const std::vector<bool>& resampled,
+                                         const Context& context) {
   std::vector<MaskRequest> requests;
   for (const SceneImage& image : scene.images) requests.push_back({image.path, {}});
   const std::vector<FoundMask> found = find_masks(requests);
   const IgnoredMasks ignored = ignored_masks(found);
   if (ignored.count > 0)
-    log_warning("{}: is used; {} differs and is ignored ({} images have two different masks)",
-                ignored.used.string(), ignored.other.string(), ignored.count);
+    context.warning("{}: is used; {} differs and is ignored ({} images have two different masks)",
+                    ignored.used.string(), ignored.other.string(), ignored.count);
   std::vector<fs::path> masks(found.size());
   for (std::size_t i = 0; i < masks.size(); ++i)
     if (resampled[i]) masks[i] = found[i].path;
@@ -164,7 +166,8 @@ void undistort(const ColmapModel& model, const ColmapImport& import,
         (import.undistorted_folder / undistorted_name(distorted[k])).string();
 }
 
-void import_points(const ColmapModel& model, const ColmapImport& import, Scene& scene) {
+void import_points(const ColmapModel& model, const ColmapImport& import, Scene& scene,
+                   const Context& context) {
   std::unordered_map<std::uint32_t, std::uint32_t> index_of;
   for (std::size_t i = 0; i < model.images.size(); ++i)
     index_of.emplace(model.images[i].id, static_cast<std::uint32_t>(i));
@@ -188,7 +191,7 @@ void import_points(const ColmapModel& model, const ColmapImport& import, Scene& 
     scene.point_colors.push_back(point.color);
   }
   if (repetitions > 0)
-    log_info(
+    context.info(
         "{}: {} observations are ignored, because another observation in the same image belongs to "
         "the same point",
         import.model_folder.string(), repetitions);
@@ -249,11 +252,11 @@ std::vector<fs::path> remove_missing_images(ColmapModel& model, const fs::path& 
 
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
                           const ProgressSink& undistorting, const ProgressSink& preparing_cameras,
-                          const ProgressSink& checking_images) {
+                          const ProgressSink& checking_images, const Context& context) {
   if (model.images.size() < 2)
     fail_in(import.model_folder, "the model has {} registered images, at least 2 are needed",
             model.images.size());
-  const auto cameras = import_cameras(model, import, preparing_cameras);
+  const auto cameras = import_cameras(model, import, preparing_cameras, context);
   const bool from_zero = std::any_of(model.images.begin(), model.images.end(),
                                      [](const ColmapImage& image) { return image.id == 0; });
 
@@ -272,8 +275,8 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
   for (const ColmapImage& image : model.images)
     resampled.push_back(cameras.at(image.camera).resampled);
   const bool all_straight = std::ranges::count(resampled, true) == 0;
-  const std::vector<fs::path> masks =
-      all_straight ? std::vector<fs::path>(resampled.size()) : masks_to_undistort(scene, resampled);
+  const std::vector<fs::path> masks = all_straight ? std::vector<fs::path>(resampled.size())
+                                                   : masks_to_undistort(scene, resampled, context);
   FirstError error;
   std::vector<char> fits_jpeg(scene.images.size());
   ProgressCounter checked(checking_images, scene.images.size());
@@ -287,7 +290,7 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
   });
   error.rethrow();
   if (!all_straight) undistort(model, import, resampled, masks, fits_jpeg, undistorting, scene);
-  import_points(model, import, scene);
+  import_points(model, import, scene, context);
   return scene;
 }
 
@@ -302,10 +305,10 @@ Housing housing_of(std::span<const ColmapCamera> cameras) {
   return housing;
 }
 
-Housing read_housing(const fs::path& path, const ColmapModel& model) {
+Housing read_housing(const fs::path& path, const ColmapModel& model, const Context& context) {
   std::vector<NamedCamera> images;
   for (const ColmapImage& image : model.images) images.push_back({image.name, image.camera});
-  return for_images(read_housing(path), images, path.string());
+  return for_images(read_housing(path, PortValues::checked, context), images, path.string());
 }
 
 Housing housing_by_image(const Housing& housing, const ColmapModel& model, const Scene& scene,

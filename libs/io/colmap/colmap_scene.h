@@ -40,8 +40,8 @@ std::vector<std::filesystem::path> remove_missing_images(ColmapModel& model,
 //
 // The id of an image is COLMAP's id minus one. Exception: if a COLMAP id is 0, all ids are COLMAP's
 // ids. The views of a sparse point are sorted by image and have confidence 0. If an image occurs
-// more than once in a track, it counts once. The log states how many observations are ignored for
-// this reason. Ports of the cameras are not used.
+// more than once in a track, it counts once. A line of `context` states how many observations are
+// ignored for this reason. Ports of the cameras are not used.
 //
 // `undistorting` gets the number of images undistorted so far, `preparing_cameras` the number of
 // cameras for which a rule has been chosen, and `checking_images` the number of images whose header
@@ -57,7 +57,7 @@ std::vector<std::filesystem::path> remove_missing_images(ColmapModel& model,
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
                           const ProgressSink& undistorting = {},
                           const ProgressSink& preparing_cameras = {},
-                          const ProgressSink& checking_images = {});
+                          const ProgressSink& checking_images = {}, const Context& context = {});
 
 // Returns a housing with the ports of `cameras` (ColmapCamera::port), by camera id. The port of the
 // camera with the id 1 is named "camera_1", and so on. Cameras without a port get the default port
@@ -66,9 +66,10 @@ Housing housing_of(std::span<const ColmapCamera> cameras);
 
 // Reads a housing file (read_housing() in housing.h) and resolves its entries for the images of
 // `model` (for_images() in housing.h): port_of() of the result finds the right port of each image,
-// also if the whole name of one image is the end of another name. Errors as for these two
-// functions.
-Housing read_housing(const std::filesystem::path& path, const ColmapModel& model);
+// also if the whole name of one image is the end of another name. Warnings and errors as for these
+// two functions.
+Housing read_housing(const std::filesystem::path& path, const ColmapModel& model,
+                     const Context& context = {});
 
 // Returns a housing that gives every image the same port as `housing`, but has only entries by
 // image and no entries by camera id. attach_ports needs this form, because a scene does not contain

@@ -16,16 +16,16 @@ void require_no_rest(const TextLine& line) {
 }
 
 // The port at the end of the line, which only COLMAP-Underwater writes.
-std::optional<refractive::Port<double>> parse_port(TextLine& line) {
+std::optional<refractive::Port<double>> parse_port(TextLine& line, const Context& context) {
   TextLine ahead = line;
   if (line.empty() || !is_port_word(ahead.word("port"))) return std::nullopt;
   const std::string word(line.word("port"));
   PortNumbers numbers;
   for (double& number : numbers) number = line.number<double>(word + " parameter");
-  return port_from(word, numbers, line.where());
+  return port_from(word, numbers, line.where(), context);
 }
 
-ColmapCamera parse_camera(TextLine& line) {
+ColmapCamera parse_camera(TextLine& line, const Context& context) {
   ColmapCamera camera;
   camera.id = line.number<std::uint32_t>("camera id");
   camera.model = line.word("camera model");
@@ -36,7 +36,7 @@ ColmapCamera parse_camera(TextLine& line) {
     fail_in(line.where(), "camera {} has the unknown model '{}'", camera.id, camera.model);
   for (int i = 0; i < parameters; ++i)
     camera.params.push_back(line.number<double>(camera.model + " parameter"));
-  camera.port = parse_port(line);
+  camera.port = parse_port(line, context);
   require_no_rest(line);
   check_colmap_camera(camera, line.where());
   return camera;
@@ -187,7 +187,7 @@ std::string points_as_text(const ColmapModel& model) {
 
 }  // namespace
 
-std::vector<ColmapCamera> read_cameras_text(const fs::path& path) {
+std::vector<ColmapCamera> read_cameras_text(const fs::path& path, const Context& context) {
   const std::string bytes = read_file(path);
   TextReader reader(bytes, path.string());
   std::vector<ColmapCamera> cameras;
@@ -197,7 +197,7 @@ std::vector<ColmapCamera> read_cameras_text(const fs::path& path) {
     if (line->rest().front() == '#')
       parse_focal_sigma(line->after('#'), stated);
     else
-      cameras.push_back(parse_camera(*line));
+      cameras.push_back(parse_camera(*line, context));
   }
   set_focal_sigmas(stated, cameras);
   return cameras;

@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "base/first_error.h"
-#include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
@@ -47,19 +46,19 @@ void declare_bit_depth(OptionList& list, int& bit_depth) {
 }
 
 int common_bit_depth(std::span<const fs::path> photographs, std::span<const ImageHeader> headers,
-                     int asked) {
+                     int asked, const Context& context) {
   std::vector<fs::path> wide;
   for (std::size_t i = 0; i < photographs.size(); ++i)
     if (headers[i].bits > 8) wide.push_back(photographs[i]);
   if (wide.empty()) {
     if (asked != 0)
-      log_warning("{} {}: is not used: no image has 16 bits", setting("bit_depth"), asked);
+      context.warning("{} {}: is not used: no image has 16 bits", setting("bit_depth"), asked);
     return 16;
   }
   if (asked != 0) return asked;
   const int bits = largest_bits(wide, decodes_that_fit(headers));
-  log_info("The values of {} images of 16 bits use {} bits (see {})", wide.size(), bits,
-           setting("bit_depth"));
+  context.info("The values of {} images of 16 bits use {} bits (see {})", wide.size(), bits,
+               setting("bit_depth"));
   return bits;
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "scene/resolution.h"
 
 namespace axial::io {
@@ -30,7 +29,7 @@ void require_size(const PhotographSize& photograph) {
 
 }  // namespace
 
-void check_photograph_sizes(std::span<const PhotographSize> photographs) {
+void check_photograph_sizes(std::span<const PhotographSize> photographs, const Context& context) {
   constexpr double kWhole = 0.9;
   const PhotographSize* first = nullptr;
   std::size_t small = 0;
@@ -41,7 +40,7 @@ void check_photograph_sizes(std::span<const PhotographSize> photographs) {
     ++small;
   }
   if (first == nullptr) return;
-  log_warning(
+  context.warning(
       "{}: is {}x{}, but its camera is {}x{}: {} of {} photographs are smaller than their cameras, "
       "and detail is lost",
       first->file.string(), first->stored.width, first->stored.height, first->camera.width,

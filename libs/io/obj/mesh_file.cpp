@@ -121,10 +121,10 @@ std::string type_of(const MeshFile& file) {
 
 }  // namespace
 
-std::filesystem::path mesh_file(const MeshFile& file) {
+std::filesystem::path mesh_file(const MeshFile& file, const Context& context) {
   refuse_other_format(file.output, setting("output"));
   const std::string type = type_of(file);
-  return mesh_beside(file.scene, file.output, file.ending, type == "ply") += "." + type;
+  return mesh_beside(file.scene, file.output, file.ending, type == "ply", context) += "." + type;
 }
 
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, const LocalFrame& frame) {

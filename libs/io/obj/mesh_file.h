@@ -22,9 +22,10 @@ struct MeshFile {
 
 // Returns the path of the mesh file. The type is "ply", "obj" or "glb", in upper or lower case. If
 // the user did not give the type, the extension of `output` decides, if it is .obj or .glb. The
-// rules for the name are those of mesh_beside() (io/openmvs/scene_files.h). Error that names the
-// setting for another type, and for an output with the extension of a format that is not written.
-std::filesystem::path mesh_file(const MeshFile& file);
+// rules for the name are those of mesh_beside() (io/openmvs/scene_files.h), with its line of
+// `context`. Error that names the setting for another type, and for an output with the extension of
+// a format that is not written.
+std::filesystem::path mesh_file(const MeshFile& file, const Context& context = {});
 
 // Writes the mesh in the format of the extension of `path`: OBJ, GLB, otherwise PLY. `frame` is the
 // frame of the mesh's positions. Positions are written in `frame`, and the file states its origin

@@ -99,13 +99,13 @@ bool is_whole(const std::string& bytes, const std::string& file) {
 
 }  // namespace
 
-StoredDepthMap read_dmap(const fs::path& path, DmapSide use) {
+StoredDepthMap read_dmap(const fs::path& path, DmapSide use, const Context& context) {
   const std::string file = path.string();
   const std::string bytes = read_file(path);
   ByteReader in(bytes, file);
   StoredDepthMap stored{parse_dmap(in), {}};
   DepthMap& map = stored.map;
-  const auto side = use == DmapSide::used ? read_dmap_side_file(path) : std::nullopt;
+  const auto side = use == DmapSide::used ? read_dmap_side_file(path, context) : std::nullopt;
   if (side) {
     if (side->content != fingerprint_of(bytes))
       fail_in(file, "is not the depth map to which {} belongs", side_file(path).string());
@@ -124,7 +124,7 @@ StoredDepthMap read_dmap(const fs::path& path, DmapSide use) {
   return stored;
 }
 
-DepthMap read_dmap_header(const fs::path& path, DmapSide use) {
+DepthMap read_dmap_header(const fs::path& path, DmapSide use, const Context& context) {
   const std::string file = path.string();
   const std::string bytes = read_beginning(path);
   ByteReader in(bytes, file);
@@ -135,7 +135,7 @@ DepthMap read_dmap_header(const fs::path& path, DmapSide use) {
     fail_in(file, "has {} bytes, but needs {} according to its header", found, wanted);
   StoredDepthMap stored{std::move(header.map), {}};
   if (use == DmapSide::used)
-    if (const auto side = read_dmap_side_file(path))
+    if (const auto side = read_dmap_side_file(path, context))
       use_side_file(*side, side_file(path).string(), stored);
   DepthMap& map = stored.map;
   map.image_path = resolved_image(map.image_path, path);
@@ -163,14 +163,14 @@ void write_dmap(const fs::path& path, const DepthMap& map, const std::string& ma
   });
 }
 
-DmapStatus dmap_status(const fs::path& path) {
+DmapStatus dmap_status(const fs::path& path, const Context& context) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return {};
   if (!fs::is_regular_file(path, ignored) || !fs::exists(side_file(path), ignored))
     return {DmapOrigin::foreign, {}};
   try {
     const std::string bytes = read_file(path);
-    const auto side = read_dmap_side_file(path);
+    const auto side = read_dmap_side_file(path, context);
     if (side && side->content == fingerprint_of(bytes)) return {DmapOrigin::ours, side->made_from};
     return {side && is_whole(bytes, path.string()) ? DmapOrigin::foreign : DmapOrigin::damaged, {}};
   } catch (const Error&) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "axial/base.h"
 #include "scene/depth_map.h"
 
 namespace axial::io {
@@ -37,13 +38,16 @@ enum class DmapSide { used, ignored };
 // has the K of the .dmap file. Image paths in the file are relative to the folder of the file, and
 // absolute in the result. Error for a truncated or malformed file, sizes that disagree, depths that
 // are negative or not finite (0 means no depth), or a side file that belongs to another depth map.
-StoredDepthMap read_dmap(const std::filesystem::path& path, DmapSide side = DmapSide::used);
+// Warns through `context` of a port's normal in the side file that is not of unit length.
+StoredDepthMap read_dmap(const std::filesystem::path& path, DmapSide side = DmapSide::used,
+                         const Context& context = {});
 
 // Reads a depth map without its pixels: `depth`, `normal` and `confidence` stay empty. The size of
-// the map is that of its camera. The fingerprint of the .dmap file is not checked. Errors as for
-// read_dmap(), except for wrong pixels and a wrong fingerprint. In addition, an Error for a file
-// whose length disagrees with its header.
-DepthMap read_dmap_header(const std::filesystem::path& path, DmapSide side = DmapSide::used);
+// the map is that of its camera. The fingerprint of the .dmap file is not checked. Warnings and
+// errors as for read_dmap(), except for wrong pixels and a wrong fingerprint. In addition, an Error
+// for a file whose length disagrees with its header.
+DepthMap read_dmap_header(const std::filesystem::path& path, DmapSide side = DmapSide::used,
+                          const Context& context = {});
 
 // Writes a depth map and its side file. First an existing depth map at `path` is removed. Then the
 // side file is replaced. Last the new depth map is renamed to `path`. Because of this order, an
@@ -82,7 +86,7 @@ struct DmapStatus {
 
 // Tells whether AxialMVS or another program wrote the depth map at `path`, and whether the depth
 // map is damaged. If there is a side file, the whole depth map is read to compare its fingerprint.
-// A file that cannot be read counts as damaged.
-DmapStatus dmap_status(const std::filesystem::path& path);
+// A file that cannot be read counts as damaged. Warnings as for read_dmap().
+DmapStatus dmap_status(const std::filesystem::path& path, const Context& context = {});
 
 }  // namespace axial::io

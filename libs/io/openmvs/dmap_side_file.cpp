@@ -31,7 +31,7 @@ refractive::PinholeLens<double> read_lens(const JsonPlace& place) {
 
 }  // namespace
 
-std::optional<DmapSideFile> read_dmap_side_file(const fs::path& dmap) {
+std::optional<DmapSideFile> read_dmap_side_file(const fs::path& dmap, const Context& context) {
   const fs::path path = side_file(dmap);
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return {};
@@ -52,7 +52,7 @@ std::optional<DmapSideFile> read_dmap_side_file(const fs::path& dmap) {
   if (const JsonPlace port = root.at("port"); !port.json.is_null())
     // A water surface is a flat port at a distance that equals the camera's height, which has no
     // limit.
-    side.camera.port = port_from_json(port, std::numeric_limits<double>::infinity());
+    side.camera.port = port_from_json(port, std::numeric_limits<double>::infinity(), context);
   side.min_depth = static_cast<float>(root.number("min_depth_m"));
   side.max_depth = static_cast<float>(root.number("max_depth_m"));
   if (!std::isfinite(side.min_depth) || !std::isfinite(side.max_depth))

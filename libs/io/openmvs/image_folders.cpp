@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <span>
 
-#include "base/log.h"
-
 namespace axial::io {
 namespace fs = std::filesystem;
 
@@ -62,15 +60,15 @@ fs::path fullest(std::span<const fs::path> folders, std::span<const fs::path> pa
 
 // Warns of the first file that `others` have, too, and that is not the same file.
 void warn_of_others(const fs::path& scene, const fs::path& folder, std::span<const fs::path> others,
-                    std::span<const fs::path> parts) {
+                    std::span<const fs::path> parts, const Context& context) {
   for (const fs::path& part : parts)
     for (const fs::path& other_folder : others) {
       const fs::path used = file_in(folder, part), other = file_in(other_folder, part);
       std::error_code error;
       if (used == other || !is_on_disk(other) || !is_on_disk(used)) continue;
       if (fs::equivalent(used, other, error) || error) continue;
-      return log_warning("{}: {} is used, although {} exists, too", scene.string(), used.string(),
-                         other.string());
+      return context.warning("{}: {} is used, although {} exists, too", scene.string(),
+                             used.string(), other.string());
     }
 }
 
@@ -78,7 +76,7 @@ void warn_of_others(const fs::path& scene, const fs::path& folder, std::span<con
 
 std::vector<std::string> find_files_of_scene(const fs::path& working_folder, const fs::path& scene,
                                              const std::vector<std::string>& names,
-                                             std::string_view what) {
+                                             std::string_view what, const Context& context) {
   Paths part_of, parts;
   for (const std::string& name : names) {
     part_of.push_back(relative_part(name, working_folder));
@@ -87,8 +85,8 @@ std::vector<std::string> find_files_of_scene(const fs::path& working_folder, con
   const fs::path scene_folder = fs::absolute(scene).lexically_normal().parent_path();
   const fs::path folder = fullest(candidates_of(working_folder, scene_folder), parts);
   if (folder != working_folder)
-    log_info("{}: the paths of its {} start at {}", scene.string(), what, folder.string());
-  warn_of_others(scene, folder, Paths{working_folder, scene_folder}, parts);
+    context.info("{}: the paths of its {} start at {}", scene.string(), what, folder.string());
+  warn_of_others(scene, folder, Paths{working_folder, scene_folder}, parts, context);
   std::vector<std::string> files;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const fs::path file =

@@ -8,7 +8,6 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/log.h"
 #include "io/images/image.h"
 #include "io/openmvs/mvs_counts.h"
 #include "private/openmvs/image_folders.h"
@@ -95,7 +94,8 @@ struct ImagePaths {
   std::vector<std::string> images, masks;
 };
 
-ImagePaths find_paths(const MvsFile& mvs, const fs::path& working_folder, const fs::path& scene) {
+ImagePaths find_paths(const MvsFile& mvs, const fs::path& working_folder, const fs::path& scene,
+                      const Context& context) {
   ImagePaths names;
   for (std::size_t i = 0; i < mvs.images.size(); ++i) {
     const std::string where = fmt::format("{}: images[{}]", scene.string(), i);
@@ -103,8 +103,8 @@ ImagePaths find_paths(const MvsFile& mvs, const fs::path& working_folder, const 
     names.images.push_back(with_slashes(mvs.images[i].name, where + ".name"));
     names.masks.push_back(with_slashes(mvs.images[i].mask_name, where + ".maskName"));
   }
-  return {find_files_of_scene(working_folder, scene, names.images, "images"),
-          find_files_of_scene(working_folder, scene, names.masks, "masks")};
+  return {find_files_of_scene(working_folder, scene, names.images, "images", context),
+          find_files_of_scene(working_folder, scene, names.masks, "masks", context)};
 }
 
 template <class T>
@@ -198,13 +198,14 @@ std::optional<OrientedBox> region_of(const MvsBox& box, const std::string& file)
 }
 
 // There are two conventions for the principal point, and the file does not name the one it uses.
-void warn_of_normalised_cameras(const Scene& scene, const MvsFile& mvs, const std::string& file) {
+void warn_of_normalised_cameras(const Scene& scene, const MvsFile& mvs, const std::string& file,
+                                const Context& context) {
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
     const SceneImage& image = scene.images[i];
     if (!image.calibrated) continue;
     const MvsImage& record = mvs.images[i];
     if (mvs.platforms[record.platform].cameras[record.camera].width > 0) continue;
-    log_warning(
+    context.warning(
         "{}: cameras are stored without a resolution; the principal point of {} is taken "
         "to be ({:.2f}, {:.2f}) of {}x{} pixels",
         file, image.path, image.camera.lens.cx, image.camera.lens.cy, image.camera.width,
@@ -295,7 +296,7 @@ fs::path absolute_folder(const fs::path& folder) {
 
 }  // namespace
 
-Scene read_mvs(const fs::path& path, const fs::path& working_folder) {
+Scene read_mvs(const fs::path& path, const fs::path& working_folder, const Context& context) {
   const std::string file = path.string();
   MvsFile mvs = parse_mvs(read_file(path), file);
   if (mvs.platforms.empty()) fail_in(file, "has no platforms");
@@ -303,11 +304,11 @@ Scene read_mvs(const fs::path& path, const fs::path& working_folder) {
     fail_in(file, "has {} images, at least 2 are needed", mvs.images.size());
   check_points(mvs, file);
   Scene scene;
-  const ImagePaths paths = find_paths(mvs, absolute_folder(working_folder), path);
+  const ImagePaths paths = find_paths(mvs, absolute_folder(working_folder), path, context);
   for (std::size_t i = 0; i < mvs.images.size(); ++i)
     scene.images.push_back(scene_image(mvs, i, paths, file));
   require_unique_ids(scene, file);
-  warn_of_normalised_cameras(scene, mvs, file);
+  warn_of_normalised_cameras(scene, mvs, file, context);
   scene.points = std::move(mvs.points);
   scene.point_normals = std::move(mvs.normals);
   scene.point_colors = std::move(mvs.colors);

@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "base/heap_bytes.h"
-#include "base/log.h"
 #include "io/ply/ply.h"
 #include "io/textured/textured_mesh.h"
 #include "private/ply/ply_header.h"
@@ -35,8 +34,8 @@ LocalFrame frame_of_positions(const LocalFrame& frame, const fs::path& ply) {
   return is_without_offset(frame, ply) ? frame : place.frame;
 }
 
-void tell_lost_offset(const fs::path& file, const LocalFrame& frame) {
-  log_info(
+void tell_lost_offset(const fs::path& file, const LocalFrame& frame, const Context& context) {
+  context.info(
       "{}: states no offset; its coordinates count from the scene's offset {:.0f} {:.0f} {:.0f}",
       file.string(), frame.origin.x(), frame.origin.y(), frame.origin.z());
 }
@@ -58,35 +57,42 @@ SparsePoint sparse_point(const PointCloud& cloud, std::size_t i, std::size_t ima
   return point;
 }
 
-// is_without_offset(), and states it in the log.
-bool is_silently_in(const LocalFrame& frame, const std::filesystem::path& file) {
+// is_without_offset(), and states it in a line of `context`.
+bool is_silently_in(const LocalFrame& frame, const std::filesystem::path& file,
+                    const Context& context) {
   if (!is_without_offset(frame, file)) return false;
-  tell_lost_offset(file, frame);
+  tell_lost_offset(file, frame, context);
   return true;
 }
 
 }  // namespace
 
-TexturedMesh read_textured_mesh_of_scene(const LocalFrame& frame, const fs::path& path) {
-  return is_silently_in(frame, path) ? read_textured_mesh(path) : read_textured_mesh(path, frame);
+TexturedMesh read_textured_mesh_of_scene(const LocalFrame& frame, const fs::path& path,
+                                         const Context& context) {
+  return is_silently_in(frame, path, context) ? read_textured_mesh(path, {}, context)
+                                              : read_textured_mesh(path, frame, context);
 }
 
-PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::path& ply) {
-  return is_silently_in(frame, ply) ? read_cloud_ply(ply) : read_cloud_ply(ply, frame);
+PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::path& ply,
+                               const Context& context) {
+  return is_silently_in(frame, ply, context) ? read_cloud_ply(ply) : read_cloud_ply(ply, frame);
 }
 
 void read_cloud_of_scene_in_portions(const LocalFrame& frame, const std::filesystem::path& ply,
-                                     std::size_t points, const CloudPortionSink& sink) {
-  read_cloud_portions(ply, is_silently_in(frame, ply) ? nullptr : &frame, points, sink);
+                                     std::size_t points, const CloudPortionSink& sink,
+                                     const Context& context) {
+  read_cloud_portions(ply, is_silently_in(frame, ply, context) ? nullptr : &frame, points, sink);
 }
 
-Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& mesh) {
-  return is_silently_in(frame, mesh) ? read_shape(mesh) : read_shape(mesh, frame);
+Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& mesh,
+                        const Context& context) {
+  return is_silently_in(frame, mesh, context) ? read_shape(mesh) : read_shape(mesh, frame);
 }
 
-void use_point_cloud(Scene& scene, const LocalFrame& frame, const std::filesystem::path& ply) {
+void use_point_cloud(Scene& scene, const LocalFrame& frame, const std::filesystem::path& ply,
+                     const Context& context) {
   const std::string file = ply.string();
-  PointCloud cloud = read_cloud_of_scene(frame, ply);
+  PointCloud cloud = read_cloud_of_scene(frame, ply, context);
   if (cloud.view_begin.empty())
     fail_in(file, "has no view_indices, which list the images that see a point");
   scene.points.clear();
@@ -95,7 +101,7 @@ void use_point_cloud(Scene& scene, const LocalFrame& frame, const std::filesyste
     scene.points.push_back(sparse_point(cloud, i, scene.images.size(), file));
   scene.point_normals = std::move(cloud.normals);
   scene.point_colors = std::move(cloud.colors);
-  log_info("{}: {} points replace the scene's points", file, scene.points.size());
+  context.info("{}: {} points replace the scene's points", file, scene.points.size());
 }
 
 namespace {

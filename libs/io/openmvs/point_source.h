@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "axial/base.h"
 #include "axial/scene_images.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/ply/ply.h"
@@ -24,16 +25,19 @@ namespace axial::io {
 // the origin of the stored positions. A comment geo_offset 0 0 0 counts as no comment. Without a
 // comment the frame of the stored positions is guessed, because OpenMVS's programs write
 // coordinates in the frame of their input but drop the comment geo_offset. The guess is that
-// of is_without_offset(), and the log states it if it is `frame`.
+// of is_without_offset(), and a line of `context` states it if it is `frame`.
 //
 // Errors as for read_cloud_ply and read_shape.
-PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
-Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& mesh);
+PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::path& ply,
+                               const Context& context = {});
+Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& mesh,
+                        const Context& context = {});
 
 // Reads a cloud of any size in portions (read_cloud_portions() in io/ply/ply.h), with the positions
 // of read_cloud_of_scene().
 void read_cloud_of_scene_in_portions(const LocalFrame& frame, const std::filesystem::path& ply,
-                                     std::size_t points, const CloudPortionSink& sink);
+                                     std::size_t points, const CloudPortionSink& sink,
+                                     const Context& context = {});
 
 // Estimates of the memory [bytes] that read_cloud_of_scene() and read_mesh_of_scene() need, with
 // their result. The estimate for a cloud is made from the size and the header of the file, and is 0
@@ -47,11 +51,12 @@ std::uint64_t bytes_to_read_mesh(const std::filesystem::path& mesh);
 // Replaces the sparse points of `scene`, with their normals and colours, by the cloud of
 // read_cloud_of_scene(). `scene` is in `frame`. The cloud must have the property view_indices,
 // which holds indices of the scene's images. The property view_weights is optional: without it all
-// confidences are 0.
+// confidences are 0. A line of `context` states the number of points.
 //
 // Error that names the file for a cloud without view_indices, an index of an image that the scene
 // does not have, or a point that is not finite. Other errors as for read_cloud_ply.
-void use_point_cloud(Scene& scene, const LocalFrame& frame, const std::filesystem::path& ply);
+void use_point_cloud(Scene& scene, const LocalFrame& frame, const std::filesystem::path& ply,
+                     const Context& context = {});
 
 // The result of count_point_cloud().
 struct PointSourceCounts {
@@ -80,12 +85,14 @@ bool is_without_offset(const LocalFrame& frame, const std::filesystem::path& pat
 // ply_place().
 LocalFrame frame_of_positions(const LocalFrame& frame, const std::filesystem::path& ply);
 
-// States in the log that the positions of `file` count as positions in the frame of its scene.
-void tell_lost_offset(const std::filesystem::path& file, const LocalFrame& frame);
+// States in a line of `context` that the positions of `file` count as positions in the frame of its
+// scene.
+void tell_lost_offset(const std::filesystem::path& file, const LocalFrame& frame,
+                      const Context& context);
 
 // Reads a mesh with its textures as read_textured_mesh() does (io/textured/textured_mesh.h). The
 // frame of the positions is that of read_mesh_of_scene(), which reads the shape alone.
-TexturedMesh read_textured_mesh_of_scene(const LocalFrame& frame,
-                                         const std::filesystem::path& path);
+TexturedMesh read_textured_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& path,
+                                         const Context& context = {});
 
 }  // namespace axial::io

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "base/log.h"
 #include "base/output_name.h"
 #include "io/cameras/geo_offset.h"
 
@@ -57,12 +56,12 @@ std::vector<fs::path> files_of_scene(const SceneFiles& files, const Scene& scene
 }
 
 fs::path mesh_beside(const fs::path& scene, const fs::path& given, const std::string& ending,
-                     bool is_ply) {
+                     bool is_ply, const Context& context) {
   const fs::path own = without_known_extension(scene) += ending;
   if (given.empty()) return own;
   if (!is_ply || !names_scene(given, scene)) return without_known_extension(given);
-  log_info("{}: is the name of the scene, whose cloud is kept: the mesh is written to {}.ply",
-           given.string(), own.string());
+  context.info("{}: is the name of the scene, whose cloud is kept: the mesh is written to {}.ply",
+               given.string(), own.string());
   return own;
 }
 

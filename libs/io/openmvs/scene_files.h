@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "axial/base.h"
 #include "io/openmvs/scene_with_cameras.h"
 
 namespace axial::io {
@@ -32,10 +33,10 @@ std::vector<std::filesystem::path> files_of_scene(const SceneFiles& files, const
 //
 // Returns `given` without a known extension (base/output_name.h). If `given` is empty, or if it
 // names the scene, with the extension .mvs or without extension, and the mesh is a PLY file
-// (`is_ply`), the result is "<scene without extension><ending>". In the latter case a line of the
-// log says so.
+// (`is_ply`), the result is "<scene without extension><ending>". In the latter case a line of
+// `context` says so.
 std::filesystem::path mesh_beside(const std::filesystem::path& scene,
                                   const std::filesystem::path& given, const std::string& ending,
-                                  bool is_ply);
+                                  bool is_ply, const Context& context);
 
 }  // namespace axial::io

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "base/unused_input.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/other_ports.h"
@@ -40,23 +39,24 @@ void check_ports(const PortCount& count, const SceneFiles& files, const fs::path
 }
 
 // Warns if the housing file, which is not used, gives an image of the scene a port.
-void warn_of_ignored_ports(const Scene& scene, const fs::path& file) {
+void warn_of_ignored_ports(const Scene& scene, const fs::path& file, const Context& context) {
   std::error_code error;
   if (!fs::exists(file, error)) return;
   Scene with_ports = {scene.images, {}, {}, {}, {}};
-  attach_ports(with_ports, read_housing(file, PortValues::passed_over), file.string());
+  attach_ports(with_ports, read_housing(file, PortValues::passed_over, context), file.string(),
+               context);
   if (const std::size_t wet = count_ports(with_ports).wet; wet > 0)
-    log_warning(
+    context.warning(
         "{}: the ports of {} images are ignored: a scene whose poses were found with ports does "
         "not fit pinholes",
         file.string(), wet);
 }
 
 std::optional<Housing> attach_housing(Scene& scene, const LocalFrame& frame,
-                                      const SceneFiles& files) {
+                                      const SceneFiles& files, const Context& context) {
   const fs::path file = housing_file(files);
   if (files.ports == PortChoice::ignored) {
-    warn_of_ignored_ports(scene, file);
+    warn_of_ignored_ports(scene, file, context);
     return {};
   }
   std::error_code error;
@@ -68,34 +68,35 @@ std::optional<Housing> attach_housing(Scene& scene, const LocalFrame& frame,
     if (!files.housing.empty()) fail_in(file, "housing file not found");
     return {};
   }
-  const Housing housing = read_housing(file);
-  warn_of_housing_beside(scene, files.scene, housing, file);
-  attach_ports(scene, in_frame(frame, housing), file.string());
+  const Housing housing = read_housing(file, PortValues::checked, context);
+  warn_of_housing_beside(scene, files.scene, housing, file, context);
+  attach_ports(scene, in_frame(frame, housing), file.string(), context);
   const PortCount count = count_ports(scene);
   check_ports(count, files, file);
-  log_info("Housing {}: {} of {} images behind a port", file.filename().string(), count.wet,
-           count.images);
+  context.info("Housing {}: {} of {} images behind a port", file.filename().string(), count.wet,
+               count.images);
   if (count.wet > 0) return housing;
   if (!files.housing.empty() && !housing.ports.empty())
     UnusedInput(files.allow_missing)
-        .report(fmt::format("{} {}: gives no image a port", setting("housing"), file.string()));
+        .report(fmt::format("{} {}: gives no image a port", setting("housing"), file.string()),
+                context);
   return {};
 }
 
-void attach_lenses(Scene& scene, const SceneFiles& files) {
-  if (attach_lenses_beside(scene, files.scene))
-    log_info("{}: {} images have distorted lenses; they are used without resampling",
-             lenses_beside(files.scene).filename().string(),
-             std::ranges::count_if(scene.images, [](const SceneImage& image) {
-               return image.camera.distortion.has_value();
-             }));
+void attach_lenses(Scene& scene, const SceneFiles& files, const Context& context) {
+  if (attach_lenses_beside(scene, files.scene, context))
+    context.info("{}: {} images have distorted lenses; they are used without resampling",
+                 lenses_beside(files.scene).filename().string(),
+                 std::ranges::count_if(scene.images, [](const SceneImage& image) {
+                   return image.camera.distortion.has_value();
+                 }));
 }
 
-void warn_of_missing_lenses(const SceneFiles& files) {
+void warn_of_missing_lenses(const SceneFiles& files, const Context& context) {
   const fs::path file = lenses_beside(files.scene);
   std::error_code error;
   if (!fs::exists(file, error))
-    log_warning("{}: file not found: the images count as undistorted", file.string());
+    context.warning("{}: file not found: the images count as undistorted", file.string());
 }
 
 }  // namespace
@@ -104,29 +105,30 @@ fs::path housing_file(const SceneFiles& files) {
   return files.housing.empty() ? housing_beside(files.scene) : files.housing;
 }
 
-SceneWithCameras read_scene_with_cameras(const SceneFiles& files) {
+SceneWithCameras read_scene_with_cameras(const SceneFiles& files, const Context& context) {
   SceneWithCameras result;
   Scene& scene = result.scene;
-  scene = read_mvs(files.scene, files.working_folder);
-  result.frame = enter_local_frame(scene, files.scene);
-  attach_lenses(scene, files);
-  result.housing = attach_housing(scene, result.frame, files);
-  if (result.housing) warn_of_missing_lenses(files);
-  log_info("Scene {}: {} images, {} points", files.scene.filename().string(), scene.images.size(),
-           scene.points.size());
+  scene = read_mvs(files.scene, files.working_folder, context);
+  result.frame = enter_local_frame(scene, files.scene, context);
+  attach_lenses(scene, files, context);
+  result.housing = attach_housing(scene, result.frame, files, context);
+  if (result.housing) warn_of_missing_lenses(files, context);
+  context.info("Scene {}: {} images, {} points", files.scene.filename().string(),
+               scene.images.size(), scene.points.size());
   return result;
 }
 
 void write_cameras_beside(const fs::path& output, const SceneWithCameras& scene,
-                          const SceneLenses& lenses, const SceneFiles& files) {
+                          const SceneLenses& lenses, const SceneFiles& files,
+                          const Context& context) {
   if (!scene.frame.is_world() || output != files.scene)
-    write_geo_offset_beside(output, scene.frame);
+    write_geo_offset_beside(output, scene.frame, context);
   write_lenses_beside(output, lenses, scene.housing.has_value());
   const fs::path file = housing_beside(output);
   std::error_code error;
   if (fs::equivalent(file, housing_file(files), error)) return;
   if (scene.housing) return write_housing(file, *scene.housing);
-  if (fs::remove(file, error)) log_info("{} removed: the scene has no ports", file.string());
+  if (fs::remove(file, error)) context.info("{} removed: the scene has no ports", file.string());
 }
 
 }  // namespace axial::io

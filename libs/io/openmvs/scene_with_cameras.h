@@ -28,22 +28,22 @@ std::filesystem::path housing_file(const SceneFiles& files);
 
 // Reads the scene, moves it into a frame near its cameras (enter_local_frame in geo_offset.h), and
 // attaches lenses and ports. Paths of images and masks are found as by read_mvs() (mvs.h). The
-// pixels of images are not read. The log
-// states the housing file and the numbers of images with ports and with distorted lenses. Warns if
-// the scene has ports but no file of lenses. Error for a malformed file, if the scene or the file
-// `files.housing` does not exist, if the ports do not meet `files.ports`, and if the file
-// `files.housing` defines ports but gives no image one. With `files.allow_missing`, the last error
-// is a warning.
-SceneWithCameras read_scene_with_cameras(const SceneFiles& files);
+// pixels of images are not read. Lines of `context` state the housing file and the numbers of
+// images with ports and with distorted lenses. Warns through `context` if the scene has ports but
+// no file of lenses. Error for a malformed file, if the scene or the file `files.housing` does not
+// exist, if the ports do not meet `files.ports`, and if the file `files.housing` defines ports but
+// gives no image one. With `files.allow_missing`, the last error is a warning.
+SceneWithCameras read_scene_with_cameras(const SceneFiles& files, const Context& context);
 
 // Writes the files of the housing, the lenses and the offset beside the scene `output`, where later
 // programs look for them. If the scene has no housing, an existing housing file is removed. The
 // offset file is written if scene.frame is not the world. If scene.frame is the world, an existing
-// offset file is removed, except if `output` is the scene that was read. The file of lenses is
-// written or removed as in write_lenses_beside. The file housing_file(files), from which the ports
-// were read, is never changed or removed. `lenses` is the result of lenses_of() for the scene and
-// `output`.
+// offset file is removed, except if `output` is the scene that was read. Lines of `context` name
+// the files that are removed. The file of lenses is written or removed as in write_lenses_beside.
+// The file housing_file(files), from which the ports were read, is never changed or removed.
+// `lenses` is the result of lenses_of() for the scene and `output`.
 void write_cameras_beside(const std::filesystem::path& output, const SceneWithCameras& scene,
-                          const SceneLenses& lenses, const SceneFiles& files);
+                          const SceneLenses& lenses, const SceneFiles& files,
+                          const Context& context);
 
 }  // namespace axial::io

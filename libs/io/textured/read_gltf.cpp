@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "io/images/image.h"
 #include "io/textured/textured_mesh.h"
 #include "private/textured/gltf_file.h"
@@ -26,10 +25,10 @@ class GltfReader {
         textured_(parts != MeshParts::shape),
         textures_(file_.name(), parts == MeshParts::textured) {}
 
-  TexturedMesh read(const std::optional<LocalFrame>& frame) {
+  TexturedMesh read(const std::optional<LocalFrame>& frame, const Context& context) {
     make_room();
     for (const GltfInstance& instance : scene_.instances)
-      for (const GltfPrimitive& primitive : instance.primitives) add(primitive, instance);
+      for (const GltfPrimitive& primitive : instance.primitives) add(primitive, instance, context);
     if (result_.mesh.faces.empty()) fail_in(file_.name(), "the mesh has no faces");
     result_.mesh.vertices = placed_in(frame, positions_, scene_.geo_offset, file_.name());
     textures_.finish(result_);
@@ -53,7 +52,7 @@ class GltfReader {
     result_.texture_of.reserve(counts.faces);
   }
 
-  void add(const GltfPrimitive& primitive, const GltfInstance& instance) {
+  void add(const GltfPrimitive& primitive, const GltfInstance& instance, const Context& context) {
     const std::size_t before = positions_.size();
     const GltfValues positions = file_.values(primitive.positions, "VEC3", {5126});
     if (positions.count > 0xFFFFFFFFu - before) fail_in(file_.name(), "has too many vertices");
@@ -66,7 +65,7 @@ class GltfReader {
     }
     const auto first = static_cast<std::uint32_t>(before);
     const bool mirrored = instance.placement.topLeftCorner<3, 3>().determinant() < 0;
-    if (textured_) add_uv(primitive, positions.count, faces, mirrored);
+    if (textured_) add_uv(primitive, positions.count, faces, mirrored, context);
     if (!textured_ && scene_.colored) add_colors(primitive, positions.count);
     for (const std::array<std::uint32_t, 3>& face : faces)
       result_.mesh.faces.push_back(
@@ -104,11 +103,12 @@ class GltfReader {
   }
 
   void add_uv(const GltfPrimitive& primitive, std::size_t vertices,
-              const std::vector<std::array<std::uint32_t, 3>>& faces, bool mirrored) {
+              const std::vector<std::array<std::uint32_t, 3>>& faces, bool mirrored,
+              const Context& context) {
     const GltfMaterial material = material_of(file_, primitive);
     const std::uint32_t texture = texture_of(material);
     if (primitive.colors && !warned_) {
-      log_warning("{}: colours of vertices (COLOR_0) have no effect on textures", file_.name());
+      context.warning("{}: colours of vertices (COLOR_0) have no effect on textures", file_.name());
       warned_ = true;
     }
     std::vector<Eigen::Vector2d> uv;  // from the upper edge
@@ -138,12 +138,12 @@ class GltfReader {
 };
 
 Mesh read_shape_gltf(const fs::path& path, const std::optional<LocalFrame>& frame) {
-  return std::move(GltfReader(path, MeshParts::shape).read(frame).mesh);
+  return std::move(GltfReader(path, MeshParts::shape).read(frame, {}).mesh);
 }
 
-std::uint64_t bytes_of_gltf_textures(const fs::path& path) {
+std::uint64_t bytes_of_gltf_textures(const fs::path& path, const Context& context) {
   GltfReader reader(path, MeshParts::sizes);
-  reader.read({});
+  reader.read({}, context);
   return reader.textures().bytes();
 }
 
@@ -196,8 +196,9 @@ TextureFiles texture_files_of_gltf(const fs::path& path) {
 
 }  // namespace
 
-TexturedMesh read_textured_gltf(const fs::path& path, const std::optional<LocalFrame>& frame) {
-  return GltfReader(path, MeshParts::textured).read(frame);
+TexturedMesh read_textured_gltf(const fs::path& path, const std::optional<LocalFrame>& frame,
+                                const Context& context) {
+  return GltfReader(path, MeshParts::textured).read(frame, context);
 }
 
 const MeshFormat kGltfMeshes{read_textured_gltf,    read_shape_gltf, is_textured_gltf,

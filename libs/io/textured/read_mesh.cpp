@@ -38,8 +38,8 @@ std::vector<fs::path> files_of_mesh(const fs::path& path) {
   return files;
 }
 
-std::uint64_t bytes_to_read_textures(const fs::path& path) {
-  return format_of(path).bytes_of_textures(path);
+std::uint64_t bytes_to_read_textures(const fs::path& path, const Context& context) {
+  return format_of(path).bytes_of_textures(path, context);
 }
 
 std::uint64_t bytes_to_read_mesh(const fs::path& path) {
@@ -54,8 +54,9 @@ Mesh read_shape(const fs::path& path, const std::optional<LocalFrame>& frame) {
   return format_of(path).read_shape(path, frame);
 }
 
-TexturedMesh read_textured_mesh(const fs::path& path, const std::optional<LocalFrame>& frame) {
-  return format_of(path).read_textured(path, frame);
+TexturedMesh read_textured_mesh(const fs::path& path, const std::optional<LocalFrame>& frame,
+                                const Context& context) {
+  return format_of(path).read_textured(path, frame, context);
 }
 
 }  // namespace axial::io

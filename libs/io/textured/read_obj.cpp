@@ -262,7 +262,7 @@ Mesh read_shape_obj(const fs::path& path, const std::optional<LocalFrame>& frame
   return std::move(ObjReader(path, MeshParts::shape).read(frame).mesh);
 }
 
-std::uint64_t bytes_of_obj_textures(const fs::path& path) {
+std::uint64_t bytes_of_obj_textures(const fs::path& path, const Context&) {
   ObjReader reader(path, MeshParts::sizes);
   reader.read({});
   return reader.textures().bytes();
@@ -340,8 +340,13 @@ TexturedMesh read_textured_obj(const fs::path& path, const std::optional<LocalFr
   return ObjReader(path, MeshParts::textured).read(frame);
 }
 
-const MeshFormat kObjMeshes{read_textured_obj,    read_shape_obj, is_textured_obj,
-                            texture_files_of_obj, place_of_obj,   bytes_of_obj_textures,
+const MeshFormat kObjMeshes{[](const fs::path& path, const std::optional<LocalFrame>& frame,
+                               const Context&) { return read_textured_obj(path, frame); },
+                            read_shape_obj,
+                            is_textured_obj,
+                            texture_files_of_obj,
+                            place_of_obj,
+                            bytes_of_obj_textures,
                             bytes_to_read_obj};
 
 std::vector<Eigen::Vector3f> placed_in(const std::optional<LocalFrame>& frame,

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "axial/base.h"
 #include "axial/scene_images.h"
 #include "io/ply/ply.h"
 
@@ -110,9 +111,10 @@ TexturedMesh read_textured_obj(const std::filesystem::path& path,
 // origin of positions. Error for a malformed file, an extension that is required and not known,
 // data outside of their file, a mesh without faces, a primitive without position or without the
 // texture coordinates of its picture, skins, morph targets that have an effect, and a picture that
-// cannot be read.
+// cannot be read. Warns through `context` of colours of vertices, which have no effect.
 TexturedMesh read_textured_gltf(const std::filesystem::path& path,
-                                const std::optional<LocalFrame>& frame = {});
+                                const std::optional<LocalFrame>& frame = {},
+                                const Context& context = {});
 
 // Returns the names of the textures of a PLY, from its comments TextureFile, in their order. A name
 // is a path that starts at the folder of the PLY. Error that names the file for a PLY with a
@@ -138,8 +140,9 @@ std::vector<std::filesystem::path> files_of_mesh(const std::filesystem::path& pa
 
 // The memory [bytes] that read_textured_mesh() needs for the textures of `path`, besides
 // bytes_to_read_mesh() (openmvs/point_source.h). Reads the headers of the pictures, and an OBJ or
-// glTF as a whole. Errors as for read_textured_mesh().
-std::uint64_t bytes_to_read_textures(const std::filesystem::path& path);
+// glTF as a whole. Warnings and errors as for read_textured_mesh().
+std::uint64_t bytes_to_read_textures(const std::filesystem::path& path,
+                                     const Context& context = {});
 
 // True if read_textured_mesh() finds pictures: a PLY with TextureFile and texture coordinates, an
 // OBJ with texture coordinates and a material with map_Kd, a glTF whose scene has a
@@ -149,7 +152,8 @@ bool is_textured_mesh(const std::filesystem::path& path);
 
 // Reads a textured mesh of any format.
 TexturedMesh read_textured_mesh(const std::filesystem::path& path,
-                                const std::optional<LocalFrame>& frame = {});
+                                const std::optional<LocalFrame>& frame = {},
+                                const Context& context = {});
 
 // Reads the vertices and faces of a mesh of any format, and colours of vertices if the file has
 // them: red, green, blue of a PLY; numbers behind the positions of an OBJ; COLOR_0 times

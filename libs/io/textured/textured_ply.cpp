@@ -228,7 +228,7 @@ TextureFiles texture_files_of_ply(const fs::path& path) {
   return files;
 }
 
-std::uint64_t bytes_of_ply_textures(const fs::path& path) {
+std::uint64_t bytes_of_ply_textures(const fs::path& path, const Context&) {
   TextureSet textures(path.string(), false);
   for (const fs::path& texture : texture_files_of_ply(path).textures)
     textures.add({.file = texture});
@@ -261,8 +261,13 @@ Mesh read_shape_ply(const fs::path& path, const std::optional<LocalFrame>& frame
 
 }  // namespace
 
-const MeshFormat kPlyMeshes{read_textured_ply,    read_shape_ply, is_textured_ply,
-                            texture_files_of_ply, ply_place,      bytes_of_ply_textures,
+const MeshFormat kPlyMeshes{[](const fs::path& path, const std::optional<LocalFrame>& frame,
+                               const Context&) { return read_textured_ply(path, frame); },
+                            read_shape_ply,
+                            is_textured_ply,
+                            texture_files_of_ply,
+                            ply_place,
+                            bytes_of_ply_textures,
                             bytes_to_read_ply};
 
 }  // namespace axial::io

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "axial/base.h"
 #include "base/error.h"
 #include "private/cameras/port_json.h"
 #include "private/only_for_io.h"
@@ -67,11 +68,11 @@ ByImage names_by_image(const JsonPlace& place, const Defined& defined, const cha
   return images;
 }
 
-// Calls use(image, entry) for each image of the scene, with the entry of entries_of_all(). Warns of
-// entries that match no image. Messages start with `file`; `key` is the place of the entries in it,
-// such as "housing.images".
+// Calls use(image, entry) for each image of the scene, with the entry of entries_of_all(). Warns
+// through `context` of entries that match no image. Messages start with `file`; `key` is the place
+// of the entries in it, such as "housing.images".
 using UseEntry = std::function<void(SceneImage& image, ByImage::const_iterator entry)>;
 void for_each_entry(Scene& scene, const ByImage& entries, const std::string& file,
-                    const std::string& key, const UseEntry& use);
+                    const std::string& key, const UseEntry& use, const Context& context);
 
 }  // namespace axial::io

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "axial/base.h"
 #include "io/bytes/json.h"
 #include "io/bytes/json_place.h"
 #include "io/cameras/port_sigmas.h"
@@ -21,20 +22,23 @@ inline constexpr double kLongestGap = 1;
 
 // Read and write a port of the type "flat" or "dome". Reading gives an Error for an unknown key,
 // another type, values that are not possible, or a flat port farther than `longest_gap` [m] from
-// the camera. A normal whose length differs from 1 by more than 1e-6 is normalised with a warning.
-refractive::Port<double> port_from_json(const JsonPlace& place, double longest_gap = kLongestGap);
+// the camera. A normal whose length differs from 1 by more than 1e-6 is normalised with a warning
+// of `context`.
+refractive::Port<double> port_from_json(const JsonPlace& place, double longest_gap,
+                                        const Context& context);
 nlohmann::json port_to_json(const refractive::Port<double>& port);
 
 // Recognise, read and write a port of the type "water-surface". Reading gives an Error for an
-// unknown key and for values that are not possible.
+// unknown key and for values that are not possible. Normals as in port_from_json().
 bool is_water_surface(const JsonPlace& place);
-WaterSurface water_surface_from_json(const JsonPlace& place);
+WaterSurface water_surface_from_json(const JsonPlace& place, const Context& context);
 nlohmann::json water_surface_to_json(const WaterSurface& surface);
 
 // Returns `n` normalised. If the length differs from 1 by no more than rounding (1e-15), `n` is
-// returned unchanged. Warns if the length differs from 1 by more than 1e-6. Error that starts with
-// `where` if the length is not above 1e-6 or not finite.
-Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where);
+// returned unchanged. Warns through `context` if the length differs from 1 by more than 1e-6. Error
+// that starts with `where` if the length is not above 1e-6 or not finite.
+Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where,
+                            const Context& context);
 
 // Error that starts with `where` for values that are not possible. The comment of read_housing
 // (housing.h) lists these values.

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to libs/io: warns of values of ports that are possible but not realistic under water. A
 // wrong unit, index or direction gives such values. Values that are not possible are errors of
-// check_port.
+// check_port. Warnings go through `context`.
 #pragma once
 
 #include <span>
 #include <string>
 
+#include "axial/base.h"
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
 #include "private/only_for_io.h"
@@ -18,11 +19,12 @@ namespace axial::io {
 // n_glass outside 1.30 to 2.00, or a flat port's normal more than 30 degrees from the optical axis.
 // A flat or dome port whose indices are all 1 has no effect and gives no warning. Warnings start
 // with `where`.
-void warn_of_port_values(const HousingPort& port, const std::string& where);
+void warn_of_port_values(const HousingPort& port, const std::string& where, const Context& context);
 
 // The same for the ports of `cameras`, once for each distinct port. Warnings start with "`file`:
 // camera ID: port".
-void warn_of_port_values(std::span<const ColmapCamera> cameras, const std::string& file);
+void warn_of_port_values(std::span<const ColmapCamera> cameras, const std::string& file,
+                         const Context& context);
 
 // Compares the ports that are attached to the scene's images with the sparse points. An observation
 // is a view of a sparse point in an image with a port. Points behind the camera do not count. Warns
@@ -33,6 +35,7 @@ void warn_of_port_values(std::span<const ColmapCamera> cameras, const std::strin
 //   photograph can be matched through so much water.
 // A port gives at most one warning. Warnings are in the order of the port names and start with
 // "`file`: housing.ports.NAME".
-void warn_of_ports_in_scene(const Scene& scene, const Housing& housing, const std::string& file);
+void warn_of_ports_in_scene(const Scene& scene, const Housing& housing, const std::string& file,
+                            const Context& context);
 
 }  // namespace axial::io

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "axial/base.h"
 #include "io/colmap/colmap.h"
 #include "private/only_for_io.h"
 #include "refractive/port.h"
@@ -49,11 +50,14 @@ std::filesystem::path part_file(const std::filesystem::path& folder, const std::
                                 ModelForm form);
 
 // Read one part of a model from a file. Error that names the file and the record for malformed or
-// truncated data. References between the parts are not checked.
-std::vector<ColmapCamera> read_cameras_text(const std::filesystem::path& path);
+// truncated data. References between the parts are not checked. `context` gets the warnings of
+// port_from().
+std::vector<ColmapCamera> read_cameras_text(const std::filesystem::path& path,
+                                            const Context& context);
 std::vector<ColmapImage> read_images_text(const std::filesystem::path& path);
 std::vector<ColmapPoint3D> read_points_text(const std::filesystem::path& path);
-std::vector<ColmapCamera> read_cameras_binary(const std::filesystem::path& path);
+std::vector<ColmapCamera> read_cameras_binary(const std::filesystem::path& path,
+                                              const Context& context);
 std::vector<ColmapImage> read_images_binary(const std::filesystem::path& path);
 std::vector<ColmapPoint3D> read_points_binary(const std::filesystem::path& path);
 
@@ -61,17 +65,27 @@ std::vector<ColmapPoint3D> read_points_binary(const std::filesystem::path& path)
 template <class T>
 struct ModelPart {
   const char* name;
-  std::vector<T> (*text)(const std::filesystem::path& path);
-  std::vector<T> (*binary)(const std::filesystem::path& path);
+  std::vector<T> (*text)(const std::filesystem::path& path, const Context& context);
+  std::vector<T> (*binary)(const std::filesystem::path& path, const Context& context);
 
-  std::vector<T> read(const std::filesystem::path& folder, ModelForm form) const {
-    return (form == ModelForm::text ? text : binary)(part_file(folder, name, form));
+  std::vector<T> read(const std::filesystem::path& folder, ModelForm form,
+                      const Context& context) const {
+    return (form == ModelForm::text ? text : binary)(part_file(folder, name, form), context);
   }
 };
+
+// A reader that sends no lines, in the form of ModelPart.
+template <auto read>
+auto without_lines(const std::filesystem::path& path, const Context&) {
+  return read(path);
+}
+
 inline constexpr ModelPart<ColmapCamera> kCameras{"cameras", read_cameras_text,
                                                   read_cameras_binary};
-inline constexpr ModelPart<ColmapImage> kImages{"images", read_images_text, read_images_binary};
-inline constexpr ModelPart<ColmapPoint3D> kPoints{"points3D", read_points_text, read_points_binary};
+inline constexpr ModelPart<ColmapImage> kImages{"images", without_lines<read_images_text>,
+                                                without_lines<read_images_binary>};
+inline constexpr ModelPart<ColmapPoint3D> kPoints{"points3D", without_lines<read_points_text>,
+                                                  without_lines<read_points_binary>};
 
 // A port in the form of COLMAP-Underwater and Calibmar: a word and eight numbers in the order
 // below. Directions and points are in the camera frame. Lengths are in metres.
@@ -91,10 +105,10 @@ int port_number(const refractive::Port<double>& port);
 PortNumbers port_numbers(const refractive::Port<double>& port);
 
 // Returns the port of a word and its numbers. A normal that is not of unit length is normalised,
-// with a warning if its length differs from 1 by more than 1e-6. Error that starts with `where` for
-// an unknown word or for values that are not possible (check_port).
+// with a warning of `context` if its length differs from 1 by more than 1e-6. Error that starts
+// with `where` for an unknown word or for values that are not possible (check_port).
 refractive::Port<double> port_from(std::string_view word, const PortNumbers& numbers,
-                                   const std::string& where);
+                                   const std::string& where, const Context& context);
 
 // True if the part's file exists in `form` and is a regular file.
 bool has_part(const std::filesystem::path& folder, const std::string& part, ModelForm form);
@@ -112,13 +126,13 @@ ModelForm model_form(const std::filesystem::path& folder);
 // cameras files exist in both forms. Error if there is no cameras file.
 ModelForm cameras_form(const std::filesystem::path& folder);
 
-// Warn, in one line, of files that were ignored although their contents differ from `model` or
-// `cameras`. `read` is the form that was read. The ignored files are the files in the other form. A
-// file that cannot be read counts as different. The order of cameras, images and points does not
-// matter. Numbers a and b count as equal if |a - b| <= 1e-9 max(1, |a|, |b|).
+// Warn through `context`, in one line, of files that were ignored although their contents differ
+// from `model` or `cameras`. `read` is the form that was read. The ignored files are the files in
+// the other form. A file that cannot be read counts as different. The order of cameras, images and
+// points does not matter. Numbers a and b count as equal if |a - b| <= 1e-9 max(1, |a|, |b|).
 void warn_of_ignored_files(const std::filesystem::path& folder, ModelForm read,
-                           const ColmapModel& model);
+                           const ColmapModel& model, const Context& context);
 void warn_of_ignored_cameras(const std::filesystem::path& folder, ModelForm read,
-                             const std::vector<ColmapCamera>& cameras);
+                             const std::vector<ColmapCamera>& cameras, const Context& context);
 
 }  // namespace axial::io

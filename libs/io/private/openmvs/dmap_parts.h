@@ -75,7 +75,8 @@ struct DmapSideFile {
 
 // Reads the side file of the depth map `dmap`. Returns nothing if there is no side file. Error if
 // the side file is malformed.
-std::optional<DmapSideFile> read_dmap_side_file(const std::filesystem::path& dmap);
+std::optional<DmapSideFile> read_dmap_side_file(const std::filesystem::path& dmap,
+                                                const Context& context);
 
 void write_dmap_side_file(const std::filesystem::path& dmap, const DmapSideFile& side);
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "axial/base.h"
 #include "private/only_for_io.h"
 
 namespace axial::io {
@@ -22,12 +23,13 @@ inline constexpr int kFoldersAboveScene = 3;
 // if no candidate has any. An absolute name below the working folder counts as a relative name if
 // its file does not exist; all other absolute names are returned as they are.
 //
-// `working_folder`: absolute and normal. `what`: the files in plural, for messages. The log states
-// a folder that is not the working folder. Warns once if the working folder or the folder of the
-// scene has another file of the same name than the one that is returned.
+// `working_folder`: absolute and normal. `what`: the files in plural, for messages. A line
+// of `context` states a folder that is not the working folder. Warns once through `context` if the
+// working folder or the folder of the scene has another file of the same name than the one that is
+// returned.
 std::vector<std::string> find_files_of_scene(const std::filesystem::path& working_folder,
                                              const std::filesystem::path& scene,
                                              const std::vector<std::string>& names,
-                                             std::string_view what);
+                                             std::string_view what, const Context& context);
 
 }  // namespace axial::io

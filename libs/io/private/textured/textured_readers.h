@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "axial/base.h"
 #include "io/images/image.h"
 #include "io/textured/textured_mesh.h"
 #include "private/only_for_io.h"
@@ -42,12 +43,12 @@ struct MeshFormat {
   using Path = const std::filesystem::path&;
   using Frame = const std::optional<LocalFrame>&;
 
-  TexturedMesh (*read_textured)(Path path, Frame frame);
+  TexturedMesh (*read_textured)(Path path, Frame frame, const Context& context);
   Mesh (*read_shape)(Path path, Frame frame);
   bool (*is_textured)(Path path);
   TextureFiles (*texture_files)(Path path);
   MeshPlace (*place)(Path path);
-  std::uint64_t (*bytes_of_textures)(Path path);
+  std::uint64_t (*bytes_of_textures)(Path path, const Context& context);
   std::uint64_t (*bytes_to_read)(Path path);
 };
 extern const MeshFormat kPlyMeshes, kObjMeshes, kGltfMeshes;
