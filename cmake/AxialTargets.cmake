@@ -112,8 +112,8 @@ endif()
 
 # add_axial_library(io SOURCES ply/ply_read.cpp [APART json.cpp] LINK scene opencv_core) adds libs/io
 # as the library axial_io. In LINK, the project's own libraries are written without the prefix
-# axial_. Headers in libs/io/private are for this library alone: they are included as
-# "private/ply/ply_header.h", which only its own files find. `scope`: of links to other projects.
+# axial_. Headers in folders private/ of libs/io are for this library alone: they are included as
+# "ply/private/ply_header.h", which only its own files find. `scope`: of links to other projects.
 function(axial_link target scope)
   foreach(item IN LISTS ARGN)
     if(TARGET axial_${item})

@@ -14,6 +14,7 @@
 #include "evaluate/alignment.h"
 #include "io/cameras/geo_offset.h"
 #include "io/colmap/colmap.h"
+#include "io/colmap/colmap_frame.h"
 #include "io/colmap/colmap_scene.h"
 
 namespace axial::apps {

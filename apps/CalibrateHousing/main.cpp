@@ -5,9 +5,9 @@
 #include "base/same_file.h"
 #include "calibrate/coverage.h"
 #include "calibrate/photographs.h"
-#include "io/cameras/calibmar.h"
 #include "io/cameras/housing.h"
-#include "io/cameras/other_ports.h"
+#include "io/colmap/calibmar.h"
+#include "io/colmap/other_ports.h"
 #include "options.h"
 #include "report.h"
 

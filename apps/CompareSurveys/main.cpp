@@ -17,6 +17,7 @@
 #include "geometry/faces.h"
 #include "geometry/seen_part.h"
 #include "io/cameras/geo_offset.h"
+#include "io/frames/lost_offset.h"
 #include "io/openmvs/point_source.h"
 #include "io/openmvs/scene_files.h"
 #include "io/ply/ply.h"

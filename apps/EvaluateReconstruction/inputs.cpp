@@ -8,8 +8,9 @@
 #include "base/unused_input.h"
 #include "cloud_parts.h"
 #include "io/cameras/geo_offset.h"
-#include "io/cameras/other_ports.h"
+#include "io/colmap/colmap_frame.h"
 #include "io/colmap/colmap_scene.h"
+#include "io/colmap/other_ports.h"
 #include "io/ply/ply.h"
 #include "io/textured/textured_mesh.h"
 

@@ -10,8 +10,9 @@
 #include "base/same_file.h"
 #include "control/target_places.h"
 #include "io/cameras/geo_offset.h"
-#include "io/cameras/other_ports.h"
+#include "io/colmap/colmap_frame.h"
 #include "io/colmap/colmap_scene.h"
+#include "io/colmap/other_ports.h"
 #include "stages.h"
 #include "usual_housing.h"
 

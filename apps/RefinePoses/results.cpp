@@ -7,6 +7,7 @@
 #include "base/out_of_memory.h"
 #include "control/target_places.h"
 #include "io/cameras/geo_offset.h"
+#include "io/colmap/colmap_frame.h"
 #include "pose/depth_sigma.h"
 #include "pose/uncertainty.h"
 #include "stages.h"

@@ -10,6 +10,7 @@
 #include "base/output_lock.h"
 #include "base/same_file.h"
 #include "io/cameras/geo_offset.h"
+#include "io/frames/lost_offset.h"
 #include "io/las/cloud_to_las.h"
 #include "io/openmvs/point_source.h"
 #include "map/local_coordinates.h"

@@ -2,10 +2,10 @@
 // JSON files of cameras, and Calibmar's calibration.yaml.
 #include <array>
 
-#include "io/cameras/calibmar.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/housing.h"
 #include "io/cameras/lenses.h"
+#include "io/colmap/calibmar.h"
 #include "reader.h"
 
 namespace axial::fuzz {

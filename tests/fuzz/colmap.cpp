@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
-#include "private/colmap/colmap_parts.h"
-#include "private/colmap/rig_parts.h"
+#include "colmap/private/colmap_parts.h"
+#include "colmap/private/rig_parts.h"
 #include "reader.h"
 
 namespace axial::fuzz {

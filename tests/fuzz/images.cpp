@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <opencv2/imgcodecs.hpp>
 
+#include "images/private/image_codecs.h"
 #include "io/images/image.h"
-#include "private/images/image_codecs.h"
 #include "reader.h"
 
 namespace axial::fuzz {

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "io/openmvs/mvs_counts.h"
-#include "private/openmvs/mvs_format.h"
+#include "openmvs/private/mvs_format.h"
 #include "reader.h"
 
 namespace axial::fuzz {

@@ -7,9 +7,9 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/base64.h"
+#include "io/frames/ply_transform.h"
 #include "io/gltf_builder.h"
 #include "io/openmvs/point_source.h"
-#include "io/ply/ply_transform.h"
 #include "io/textured/textured_mesh.h"
 #include "reader.h"
 

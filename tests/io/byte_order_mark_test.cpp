@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.h"
-#include "io/cameras/calibmar.h"
 #include "io/cameras/housing.h"
 #include "io/cameras/lenses.h"
 #include "io/cameras/position_file.h"
+#include "io/colmap/calibmar.h"
 #include "io/colmap/colmap.h"
 #include "io/ply/ply.h"
 #include "io/wrong_input.h"

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "base/atomic_file.h"
+#include "io/colmap/colmap_frame.h"
 #include "io/wrong_input.h"
 #include "scene/camera_model.h"
 #include "support/captured_events.h"

@@ -12,7 +12,7 @@
 #include "base/atomic_file.h"
 #include "io/las/cloud_to_las.h"
 #include "io/wrong_input.h"
-#include "private/las/las_writer.h"
+#include "las/private/las_writer.h"
 
 namespace axial::io {
 namespace {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "io/frames/lost_offset.h"
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/cameras/other_ports.h"
+#include "io/colmap/other_ports.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Distinguishes realistic port values from values that no port has under water.
-#include "private/cameras/port_values.h"
+#include "cameras/private/port_values.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

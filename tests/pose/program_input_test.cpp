@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.h"
-#include "io/cameras/calibmar.h"
+#include "io/colmap/calibmar.h"
 #include "pose/refine_poses.h"
 
 namespace axial::pose {

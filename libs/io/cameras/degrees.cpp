@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "private/cameras/position_parts.h"
+#include "cameras/private/position_parts.h"
 
 namespace axial::io {
 namespace {

@@ -10,7 +10,6 @@
 
 #include "axial/base.h"
 #include "io/cameras/housing.h"
-#include "io/colmap/colmap.h"
 #include "scene/decompositions.h"
 #include "scene/local_frame.h"
 
@@ -39,16 +38,6 @@ void write_geo_offset_beside(const std::filesystem::path& scene_path, const Loca
 // sparse points, which are float, have lost digits. Errors as for read_geo_offset_beside().
 LocalFrame enter_local_frame(Scene& scene, const std::filesystem::path& scene_path,
                              const Context& context = {});
-
-// Moves a model from world coordinates into the frame that frame_of() chooses for its camera
-// centres and points, and returns this frame. If the model is near the origin of the world, the
-// frame is the world and the model stays unchanged.
-LocalFrame enter_local_frame(ColmapModel& model);
-
-// enter() moves the camera centres and the points of a model from world coordinates into `frame`.
-// leave() moves them from `frame` to world coordinates.
-void enter(const LocalFrame& frame, ColmapModel& model);
-void leave(const LocalFrame& frame, ColmapModel& model);
 
 // Converts `housing` from world coordinates to `frame` and returns the result. Only water surfaces
 // change, because other ports have no position in the world.

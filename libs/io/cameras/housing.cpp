@@ -6,11 +6,11 @@
 
 #include "base/error.h"
 #include "base/output_name.h"
-#include "io/cameras/calibmar.h"
-#include "private/bytes/text_reader.h"
-#include "private/cameras/image_names.h"
-#include "private/cameras/port_json.h"
-#include "private/cameras/port_values.h"
+#include "bytes/private/text_reader.h"
+#include "cameras/private/image_names.h"
+#include "cameras/private/port_json.h"
+#include "cameras/private/port_values.h"
+#include "io/colmap/calibmar.h"
 
 namespace axial::io {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/cameras/image_names.h"
+#include "cameras/private/image_names.h"
 
 #include <filesystem>
 #include <set>

@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "base/file_extension.h"
+#include "cameras/private/position_parts.h"
 #include "io/cameras/position_file.h"
-#include "private/cameras/position_parts.h"
 
 namespace axial::io {
 namespace {

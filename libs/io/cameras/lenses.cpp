@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "base/output_name.h"
-#include "private/cameras/image_names.h"
-#include "private/cameras/port_json.h"
+#include "cameras/private/image_names.h"
+#include "cameras/private/port_json.h"
 #include "scene/camera_model.h"
 
 namespace axial::io {

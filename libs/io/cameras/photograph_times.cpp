@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/atomic_file.h"
-#include "private/bytes/text_reader.h"
+#include "bytes/private/text_reader.h"
 
 namespace axial::io {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/cameras/port_json.h"
+#include "cameras/private/port_json.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "private/cameras/port_json.h"
+#include "cameras/private/port_json.h"
 
 namespace axial::io {
 namespace {

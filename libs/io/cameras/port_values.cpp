@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/cameras/port_values.h"
+#include "cameras/private/port_values.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <set>
 #include <utility>
 #include <vector>
-
-#include "private/colmap/colmap_parts.h"
 
 namespace axial::io {
 namespace {
@@ -147,15 +144,6 @@ struct SceneCheck {
 void warn_of_port_values(const HousingPort& port, const std::string& where,
                          const Context& context) {
   std::visit(Values{where, context}, port);
-}
-
-void warn_of_port_values(std::span<const ColmapCamera> cameras, const std::string& file,
-                         const Context& context) {
-  std::set<std::pair<int, PortNumbers>> seen;
-  for (const ColmapCamera& camera : cameras)
-    if (camera.port && seen.emplace(port_number(*camera.port), port_numbers(*camera.port)).second)
-      warn_of_port_values(to_housing_port(*camera.port),
-                          fmt::format("{}: camera {}: port", file, camera.id), context);
 }
 
 void warn_of_ports_in_scene(const Scene& scene, const Housing& housing, const std::string& file,

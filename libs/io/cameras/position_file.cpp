@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "private/bytes/text_reader.h"
-#include "private/cameras/position_parts.h"
+#include "bytes/private/text_reader.h"
+#include "cameras/private/position_parts.h"
 
 namespace axial::io {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "base/file_extension.h"
 #include "base/split.h"
-#include "private/bytes/text_reader.h"
-#include "private/cameras/position_parts.h"
+#include "bytes/private/text_reader.h"
+#include "cameras/private/position_parts.h"
 
 namespace axial::io {
 namespace {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cameras/private/position_parts.h"
 #include "io/cameras/image_positions.h"
-#include "private/cameras/position_parts.h"
 #include "scene/robust_similarity.h"
 
 namespace axial::io {

@@ -8,7 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/file_extension.h"
 #include "base/split.h"
-#include "private/bytes/text_reader.h"
+#include "bytes/private/text_reader.h"
 
 namespace axial::io {
 namespace {

@@ -10,7 +10,7 @@
 #include "base/byte_order_mark.h"
 #include "base/error.h"
 #include "base/parse_number.h"
-#include "private/openmvs/mvs_format.h"
+#include "cameras/private/checked_rotation.h"
 
 namespace axial::io {
 namespace {

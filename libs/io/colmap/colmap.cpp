@@ -8,9 +8,9 @@
 #include <unordered_set>
 
 #include "base/error.h"
-#include "io/cameras/calibmar.h"
-#include "private/cameras/port_values.h"
-#include "private/colmap/colmap_parts.h"
+#include "cameras/private/port_values.h"
+#include "colmap/private/colmap_parts.h"
+#include "io/colmap/calibmar.h"
 
 namespace axial::io {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/atomic_file.h"
-#include "private/bytes/byte_reader.h"
-#include "private/bytes/byte_writer.h"
-#include "private/colmap/colmap_parts.h"
+#include "bytes/private/byte_reader.h"
+#include "bytes/private/byte_writer.h"
+#include "colmap/private/colmap_parts.h"
 
 namespace axial::io {
 namespace {

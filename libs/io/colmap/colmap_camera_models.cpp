@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "private/colmap/colmap_parts.h"
+#include "colmap/private/colmap_parts.h"
 
 namespace axial::io {
 namespace {

@@ -12,7 +12,7 @@
 #include <span>
 
 #include "base/error.h"
-#include "private/colmap/colmap_parts.h"
+#include "colmap/private/colmap_parts.h"
 
 namespace axial::io {
 namespace {

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "base/error.h"
+#include "colmap/private/colmap_parts.h"
 #include "lens/models.h"
-#include "private/colmap/colmap_parts.h"
 #include "scene/camera_model.h"
 
 namespace axial::io {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "base/error.h"
-#include "private/cameras/port_json.h"
-#include "private/colmap/colmap_parts.h"
+#include "cameras/private/port_json.h"
+#include "cameras/private/port_values.h"
+#include "colmap/private/colmap_parts.h"
 
 namespace axial::io {
 namespace {
@@ -61,6 +64,15 @@ refractive::Port<double> port_from(std::string_view word, const PortNumbers& v,
     fail_in(where, "the port '{}' is neither FLATPORT nor DOMEPORT", word);
   check_port(port, where);
   return port;
+}
+
+void warn_of_port_values(std::span<const ColmapCamera> cameras, const std::string& file,
+                         const Context& context) {
+  std::set<std::pair<int, PortNumbers>> seen;
+  for (const ColmapCamera& camera : cameras)
+    if (camera.port && seen.emplace(port_number(*camera.port), port_numbers(*camera.port)).second)
+      warn_of_port_values(to_housing_port(*camera.port),
+                          fmt::format("{}: camera {}: port", file, camera.id), context);
 }
 
 }  // namespace axial::io

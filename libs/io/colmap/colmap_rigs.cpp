@@ -5,10 +5,10 @@
 #include <set>
 
 #include "base/atomic_file.h"
-#include "private/bytes/byte_reader.h"
-#include "private/bytes/text_reader.h"
-#include "private/colmap/colmap_parts.h"
-#include "private/colmap/rig_parts.h"
+#include "bytes/private/byte_reader.h"
+#include "bytes/private/text_reader.h"
+#include "colmap/private/colmap_parts.h"
+#include "colmap/private/rig_parts.h"
 
 namespace axial::io {
 namespace {

@@ -10,11 +10,11 @@
 #include "base/first_error.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
+#include "cameras/private/image_names.h"
+#include "colmap/private/colmap_undistort.h"
 #include "io/colmap/colmap_lens.h"
 #include "io/images/image.h"
 #include "io/images/masks.h"
-#include "private/cameras/image_names.h"
-#include "private/colmap/colmap_undistort.h"
 #include "scene/camera_model.h"
 
 namespace axial::io {

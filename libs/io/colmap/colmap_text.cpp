@@ -2,8 +2,8 @@
 #include <map>
 
 #include "base/atomic_file.h"
-#include "private/bytes/text_reader.h"
-#include "private/colmap/colmap_parts.h"
+#include "bytes/private/text_reader.h"
+#include "colmap/private/colmap_parts.h"
 
 namespace axial::io {
 namespace {

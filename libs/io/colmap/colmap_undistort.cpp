@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/colmap/colmap_undistort.h"
+#include "colmap/private/colmap_undistort.h"
 
 #include <algorithm>
 #include <cstddef>

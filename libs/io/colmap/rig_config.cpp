@@ -4,10 +4,10 @@
 #include <set>
 
 #include "base/error.h"
+#include "colmap/private/colmap_parts.h"
+#include "colmap/private/rig_parts.h"
 #include "io/bytes/json.h"
 #include "io/bytes/json_place.h"
-#include "private/colmap/colmap_parts.h"
-#include "private/colmap/rig_parts.h"
 
 namespace axial::io {
 namespace {

@@ -13,8 +13,8 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/quiet_errors.h"
-#include "private/images/image_codecs.h"
-#include "private/images/opencv_codecs.h"
+#include "images/private/image_codecs.h"
+#include "images/private/opencv_codecs.h"
 #include "scene/resolution.h"
 
 namespace axial::io {

@@ -10,8 +10,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/error.h"
-#include "private/images/image_codecs.h"
-#include "private/images/opencv_codecs.h"
+#include "images/private/image_codecs.h"
+#include "images/private/opencv_codecs.h"
 
 namespace axial::io {
 

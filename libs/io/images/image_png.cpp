@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "private/images/image_codecs.h"
+#include "images/private/image_codecs.h"
 
 namespace axial::io {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "private/images/image_codecs.h"
+#include "images/private/image_codecs.h"
 
 namespace axial::io {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/images/opencv_codecs.h"
+#include "images/private/opencv_codecs.h"
 
 #include <dlfcn.h>
 

@@ -6,11 +6,12 @@
 #include <optional>
 
 #include "base/error.h"
+#include "io/frames/lost_offset.h"
 #include "io/openmvs/point_source.h"
 #include "io/ply/ply.h"
-#include "private/las/las_writer.h"
-#include "private/ply/ply_rows.h"
-#include "private/ply/ply_stream.h"
+#include "las/private/las_writer.h"
+#include "ply/private/ply_rows.h"
+#include "ply/private/ply_stream.h"
 
 namespace axial::io {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/las/las_header.h"
+#include "las/private/las_header.h"
 
 #include <cassert>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "private/bytes/byte_writer.h"
+#include "bytes/private/byte_writer.h"
 
 namespace axial::io {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/las/las_writer.h"
+#include "las/private/las_writer.h"
 
 #include <algorithm>
 #include <span>

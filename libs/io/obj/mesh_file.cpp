@@ -14,7 +14,7 @@
 #include "base/output_name.h"
 #include "io/openmvs/scene_files.h"
 #include "io/ply/ply.h"
-#include "private/textured/gltf_file.h"
+#include "textured/private/gltf_file.h"
 
 namespace axial::io {
 namespace {

@@ -4,7 +4,7 @@
 #include <variant>
 
 #include "base/error.h"
-#include "private/openmvs/dmap_parts.h"
+#include "openmvs/private/dmap_parts.h"
 
 namespace axial::io {
 namespace {

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "io/artifacts/artifact.h"
-#include "private/openmvs/dmap_parts.h"
+#include "openmvs/private/dmap_parts.h"
 
 namespace axial::io {
 namespace {

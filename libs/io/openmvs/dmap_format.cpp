@@ -4,8 +4,9 @@
 #include <span>
 
 #include "base/error.h"
-#include "private/openmvs/dmap_parts.h"
-#include "private/openmvs/mvs_format.h"
+#include "cameras/private/checked_rotation.h"
+#include "openmvs/private/dmap_parts.h"
+#include "openmvs/private/mvs_format.h"
 
 namespace axial::io {
 namespace {

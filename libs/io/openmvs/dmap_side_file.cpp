@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "cameras/private/port_json.h"
 #include "io/artifacts/artifact.h"
-#include "private/cameras/port_json.h"
-#include "private/openmvs/dmap_parts.h"
+#include "openmvs/private/dmap_parts.h"
 
 namespace axial::io {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/openmvs/image_folders.h"
+#include "openmvs/private/image_folders.h"
 
 #include <algorithm>
 #include <span>

@@ -8,10 +8,11 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "cameras/private/checked_rotation.h"
 #include "io/images/image.h"
 #include "io/openmvs/mvs_counts.h"
-#include "private/openmvs/image_folders.h"
-#include "private/openmvs/mvs_format.h"
+#include "openmvs/private/image_folders.h"
+#include "openmvs/private/mvs_format.h"
 
 namespace axial::io {
 namespace {

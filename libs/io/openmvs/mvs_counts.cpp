@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/heap_bytes.h"
-#include "private/openmvs/mvs_format.h"
+#include "openmvs/private/mvs_format.h"
 
 namespace axial::io {
 namespace {

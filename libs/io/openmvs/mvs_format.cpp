@@ -1,31 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/openmvs/mvs_format.h"
+#include "openmvs/private/mvs_format.h"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <filesystem>
 
 #include "base/error.h"
 #include "base/file_extension.h"
-#include "private/bytes/byte_reader.h"
-#include "private/bytes/byte_writer.h"
+#include "bytes/private/byte_reader.h"
+#include "bytes/private/byte_writer.h"
 
 namespace axial::io {
-Eigen::Matrix3d checked_rotation(const Eigen::Matrix3d& r, const std::string& where) {
-  if (!r.allFinite()) fail("{} contains a value that is not finite", where);
-  const double deviation = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(deviation <= 1e-3))
-    fail("{} is not a rotation: R R^T differs from I by {}", where, deviation);
-  if (r.determinant() < 0)
-    fail("{} is not a rotation: its determinant is {}", where, r.determinant());
-  // A matrix that is a rotation up to rounding stays unchanged, so that reading and writing a file
-  // does not change it.
-  if (deviation < 1e-9) return r;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
-}
-
 namespace {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;

@@ -11,6 +11,7 @@
 #include "axial/scene_images.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/ply/ply.h"
+#include "io/textured/textured_mesh.h"
 #include "scene/local_frame.h"
 #include "scene/mesh.h"
 #include "scene/point_cloud.h"
@@ -39,14 +40,10 @@ void read_cloud_of_scene_in_portions(const LocalFrame& frame, const std::filesys
                                      std::size_t points, const CloudPortionSink& sink,
                                      const Context& context = {});
 
-// Estimates of the memory [bytes] that read_cloud_of_scene() and read_mesh_of_scene() need, with
-// their result. The estimate for a cloud is made from the size and the header of the file, and is 0
-// if the header cannot be read or does not fit the size. The estimate for a mesh is an upper bound
-// that includes texture coordinates, and is 0 if the size cannot be found. For a PLY it is made
-// from the size alone; the lines of an OBJ and the JSON part of a glTF are read for it. Error that
-// names the file for a malformed glTF.
+// An estimate of the memory [bytes] that read_cloud_of_scene() needs, with its result. The estimate
+// is made from the size and the header of the file, and is 0 if the header cannot be read or does
+// not fit the size.
 std::uint64_t bytes_to_read_cloud(const std::filesystem::path& ply);
-std::uint64_t bytes_to_read_mesh(const std::filesystem::path& mesh);
 
 // Replaces the sparse points of `scene`, with their normals and colours, by the cloud of
 // read_cloud_of_scene(). `scene` is in `frame`. The cloud must have the property view_indices,
@@ -71,24 +68,6 @@ struct PointSourceCounts {
 // be read and for a malformed file. In these cases use_point_cloud reports the reason.
 std::optional<PointSourceCounts> count_point_cloud(const std::filesystem::path& ply,
                                                    const MvsCounts& scene);
-
-// The rule for meshes and clouds that state no offset. Editors and other programs drop the offset,
-// and write either local coordinates or world coordinates. Returns true if the positions of the
-// file are in `frame` although the file states no offset: if the first stored position is nearer to
-// the origin of its coordinates than to the origin of `frame` in the world. False if `frame` is the
-// world, and for a file without vertices. `path`: PLY, OBJ, GLB or glTF. Errors as for the readers
-// of these formats.
-bool is_without_offset(const LocalFrame& frame, const std::filesystem::path& path);
-
-// The frame of the stored positions of a PLY that belongs to a scene in `frame`: `frame` if
-// is_without_offset(), otherwise that of the comment geo_offset, or the world. Errors as for
-// ply_place().
-LocalFrame frame_of_positions(const LocalFrame& frame, const std::filesystem::path& ply);
-
-// States in a line of `context` that the positions of `file` count as positions in the frame of its
-// scene.
-void tell_lost_offset(const std::filesystem::path& file, const LocalFrame& frame,
-                      const Context& context);
 
 // Reads a mesh with its textures as read_textured_mesh() does (io/textured/textured_mesh.h). The
 // frame of the positions is that of read_mesh_of_scene(), which reads the shape alone.

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "base/unused_input.h"
 #include "io/cameras/geo_offset.h"
-#include "io/cameras/other_ports.h"
+#include "io/colmap/other_ports.h"
 #include "io/openmvs/mvs.h"
 
 namespace axial::io {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/ply/ply_header.h"
+#include "ply/private/ply_header.h"
 
 #include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
 
-#include "private/bytes/text_reader.h"
+#include "bytes/private/text_reader.h"
 
 namespace axial::io {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "base/error.h"
 #include "io/ply/ply.h"
-#include "private/ply/ply_rows.h"
-#include "private/ply/ply_stream.h"
+#include "ply/private/ply_rows.h"
+#include "ply/private/ply_stream.h"
 
 namespace axial::io {
 

@@ -4,7 +4,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/ply/ply.h"
-#include "private/ply/ply_rows.h"
+#include "ply/private/ply_rows.h"
 
 namespace axial::io {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/ply/ply_rows.h"
+#include "ply/private/ply_rows.h"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/ply/ply_stream.h"
+#include "ply/private/ply_stream.h"
 
 #include <algorithm>
 #include <system_error>

@@ -3,9 +3,9 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "bytes/private/atomic_stream.h"
+#include "bytes/private/byte_writer.h"
 #include "io/ply/ply.h"
-#include "private/bytes/atomic_stream.h"
-#include "private/bytes/byte_writer.h"
 
 namespace axial::io {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/textured/file_names.h"
+#include "textured/private/file_names.h"
 
 #include <algorithm>
 #include <array>

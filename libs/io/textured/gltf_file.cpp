@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/textured/gltf_file.h"
+#include "textured/private/gltf_file.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "io/bytes/json.h"
-#include "private/textured/file_names.h"
+#include "textured/private/file_names.h"
 
 namespace axial::io {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "io/bytes/json.h"
-#include "private/textured/gltf_file.h"
+#include "textured/private/gltf_file.h"
 
 namespace axial::io {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/textured/gltf_scene.h"
+#include "textured/private/gltf_scene.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

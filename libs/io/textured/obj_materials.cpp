@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/textured/obj_materials.h"
+#include "textured/private/obj_materials.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_extension.h"
-#include "private/textured/file_names.h"
+#include "textured/private/file_names.h"
 
 namespace axial::io {
 

@@ -7,10 +7,10 @@
 #include "base/error.h"
 #include "io/images/image.h"
 #include "io/textured/textured_mesh.h"
-#include "private/textured/gltf_file.h"
-#include "private/textured/gltf_scene.h"
-#include "private/textured/texture_set.h"
-#include "private/textured/textured_readers.h"
+#include "textured/private/gltf_file.h"
+#include "textured/private/gltf_scene.h"
+#include "textured/private/texture_set.h"
+#include "textured/private/textured_readers.h"
 
 namespace axial::io {
 namespace {

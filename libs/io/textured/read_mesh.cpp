@@ -2,9 +2,8 @@
 // The readers for meshes of any format.
 #include "base/error.h"
 #include "base/file_extension.h"
-#include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
-#include "private/textured/textured_readers.h"
+#include "textured/private/textured_readers.h"
 
 namespace axial::io {
 namespace {

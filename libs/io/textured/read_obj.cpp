@@ -12,8 +12,8 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/textured/textured_mesh.h"
-#include "private/textured/obj_materials.h"
-#include "private/textured/textured_readers.h"
+#include "textured/private/obj_materials.h"
+#include "textured/private/textured_readers.h"
 
 namespace axial::io {
 namespace {

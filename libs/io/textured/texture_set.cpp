@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "private/textured/texture_set.h"
+#include "textured/private/texture_set.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 
 #include "base/error.h"
 #include "base/srgb.h"
+#include "images/private/image_codecs.h"
 #include "io/images/image.h"
-#include "private/images/image_codecs.h"
-#include "private/textured/textured_readers.h"
+#include "textured/private/textured_readers.h"
 
 namespace axial::io {
 namespace {

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "base/error.h"
-#include "private/textured/textured_writers.h"
+#include "textured/private/textured_writers.h"
 
 namespace axial::io {
 namespace {

@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "io/images/image.h"
-#include "private/textured/textured_writers.h"
+#include "textured/private/textured_writers.h"
 
 namespace axial::io {
 

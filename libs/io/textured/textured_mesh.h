@@ -138,8 +138,14 @@ TextureFiles texture_files_of(const std::filesystem::path& path);
 // Returns `path` alone for a mesh that cannot be read, because its reader says why.
 std::vector<std::filesystem::path> files_of_mesh(const std::filesystem::path& path);
 
+// An upper bound of the memory [bytes] that read_shape() needs, with its result and with texture
+// coordinates. 0 if the size of the file cannot be found. For a PLY it is made from the size alone;
+// the lines of an OBJ and the JSON part of a glTF are read for it. Error that names the file for a
+// malformed glTF.
+std::uint64_t bytes_to_read_mesh(const std::filesystem::path& mesh);
+
 // The memory [bytes] that read_textured_mesh() needs for the textures of `path`, besides
-// bytes_to_read_mesh() (openmvs/point_source.h). Reads the headers of the pictures, and an OBJ or
+// bytes_to_read_mesh(). Reads the headers of the pictures, and an OBJ or
 // glTF as a whole. Warnings and errors as for read_textured_mesh().
 std::uint64_t bytes_to_read_textures(const std::filesystem::path& path,
                                      const Context& context = {});

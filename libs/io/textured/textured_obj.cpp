@@ -3,7 +3,7 @@
 
 #include <iterator>
 
-#include "private/textured/textured_writers.h"
+#include "textured/private/textured_writers.h"
 
 namespace axial::io {
 

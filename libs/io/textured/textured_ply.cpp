@@ -3,13 +3,13 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "private/bytes/byte_writer.h"
-#include "private/ply/ply_rows.h"
-#include "private/ply/ply_stream.h"
-#include "private/textured/file_names.h"
-#include "private/textured/texture_set.h"
-#include "private/textured/textured_readers.h"
-#include "private/textured/textured_writers.h"
+#include "bytes/private/byte_writer.h"
+#include "ply/private/ply_rows.h"
+#include "ply/private/ply_stream.h"
+#include "textured/private/file_names.h"
+#include "textured/private/texture_set.h"
+#include "textured/private/textured_readers.h"
+#include "textured/private/textured_writers.h"
 
 namespace axial::io {
 

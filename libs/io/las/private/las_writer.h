@@ -9,9 +9,9 @@
 #include <string>
 
 #include "axial/scene.h"
-#include "private/bytes/atomic_stream.h"
-#include "private/bytes/byte_writer.h"
-#include "private/las/las_header.h"
+#include "bytes/private/atomic_stream.h"
+#include "bytes/private/byte_writer.h"
+#include "las/private/las_header.h"
 #include "private/only_for_io.h"
 
 namespace axial::io {

@@ -12,7 +12,7 @@
 
 #include "axial/base.h"
 #include "base/error.h"
-#include "private/cameras/port_json.h"
+#include "cameras/private/port_json.h"
 #include "private/only_for_io.h"
 #include "scene/scene.h"
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
-#include "private/bytes/byte_reader.h"
-#include "private/bytes/byte_writer.h"
+#include "bytes/private/byte_reader.h"
+#include "bytes/private/byte_writer.h"
 #include "private/only_for_io.h"
 #include "scene/camera_model.h"
 #include "scene/depth_map.h"

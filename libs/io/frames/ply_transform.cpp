@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/ply/ply_transform.h"
+#include "io/frames/ply_transform.h"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "io/openmvs/point_source.h"
+#include "bytes/private/byte_writer.h"
+#include "io/frames/lost_offset.h"
 #include "io/ply/ply.h"
-#include "private/bytes/byte_writer.h"
-#include "private/ply/ply_header.h"
+#include "ply/private/ply_header.h"
 
 namespace axial::io {
 namespace {

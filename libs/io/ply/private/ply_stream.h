@@ -8,8 +8,8 @@
 #include <functional>
 #include <string>
 
+#include "ply/private/ply_header.h"
 #include "private/only_for_io.h"
-#include "private/ply/ply_header.h"
 
 namespace axial::io {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "private/bytes/text_reader.h"
+#include "bytes/private/text_reader.h"
 #include "private/only_for_io.h"
-#include "private/textured/texture_set.h"
+#include "textured/private/texture_set.h"
 
 namespace axial::io {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "private/bytes/byte_reader.h"
+#include "bytes/private/byte_reader.h"
 #include "private/only_for_io.h"
 
 namespace axial::io {

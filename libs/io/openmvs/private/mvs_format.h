@@ -74,9 +74,4 @@ MvsFile parse_mvs(std::string_view bytes, const std::string& file);
 // the memory grows while the bytes are collected.
 std::string format_mvs(const MvsFile& mvs, std::size_t room = 0);
 
-// Returns a rotation for the matrix `r`. Let d be the largest absolute element of r r^T - I. If d
-// is less than 1e-9, the result is `r`. Otherwise the result is the orthonormal matrix nearest to
-// `r`. Error that starts with `where` if `r` is not finite, if d exceeds 1e-3, or if det r < 0.
-Eigen::Matrix3d checked_rotation(const Eigen::Matrix3d& r, const std::string& where);
-
 }  // namespace axial::io

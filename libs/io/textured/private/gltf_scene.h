@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "private/only_for_io.h"
-#include "private/textured/gltf_file.h"
-#include "private/textured/texture_set.h"
+#include "textured/private/gltf_file.h"
+#include "textured/private/texture_set.h"
 
 namespace axial::io {
 

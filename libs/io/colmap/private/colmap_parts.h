@@ -135,4 +135,9 @@ void warn_of_ignored_files(const std::filesystem::path& folder, ModelForm read,
 void warn_of_ignored_cameras(const std::filesystem::path& folder, ModelForm read,
                              const std::vector<ColmapCamera>& cameras, const Context& context);
 
+// warn_of_port_values() (cameras/private/port_values.h) for the ports of `cameras`, once for each
+// distinct port. Warnings start with "`file`: camera ID: port".
+void warn_of_port_values(std::span<const ColmapCamera> cameras, const std::string& file,
+                         const Context& context);
+
 }  // namespace axial::io

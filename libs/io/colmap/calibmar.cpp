@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/cameras/calibmar.h"
+#include "io/colmap/calibmar.h"
 
 #include <fmt/ranges.h>
 #include <yaml-cpp/yaml.h>
@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "base/parse_number.h"
-#include "private/colmap/colmap_parts.h"
+#include "colmap/private/colmap_parts.h"
 
 namespace axial::io {
 namespace {

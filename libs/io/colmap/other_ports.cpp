@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/cameras/other_ports.h"
+#include "io/colmap/other_ports.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "base/error.h"
-#include "private/colmap/colmap_parts.h"
+#include "colmap/private/colmap_parts.h"
 
 namespace axial::io {
 namespace {

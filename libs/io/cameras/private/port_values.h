@@ -4,12 +4,10 @@
 // check_port. Warnings go through `context`.
 #pragma once
 
-#include <span>
 #include <string>
 
 #include "axial/base.h"
 #include "io/cameras/housing.h"
-#include "io/colmap/colmap.h"
 #include "private/only_for_io.h"
 #include "scene/scene.h"
 
@@ -20,11 +18,6 @@ namespace axial::io {
 // A flat or dome port whose indices are all 1 has no effect and gives no warning. Warnings start
 // with `where`.
 void warn_of_port_values(const HousingPort& port, const std::string& where, const Context& context);
-
-// The same for the ports of `cameras`, once for each distinct port. Warnings start with "`file`:
-// camera ID: port".
-void warn_of_port_values(std::span<const ColmapCamera> cameras, const std::string& file,
-                         const Context& context);
 
 // Compares the ports that are attached to the scene's images with the sparse points. An observation
 // is a view of a sparse point in an image with a port. Points behind the camera do not count. Warns
