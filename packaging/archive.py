@@ -99,7 +99,7 @@ def newest_glibc(prefix):
 
 
 def add_data(prefix):
-    """Copies the data of GDAL and PROJ to where the programs look for them (libs/base/bundled_data.h). Returns the
+    """Copies the data of GDAL and PROJ to where the programs look for them (libs/base/program/bundled_data.h). Returns the
     folders in the system."""
     for name, folder in DATA.items():
         if not folder.is_dir():

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "base/program.h"
+#include "base/program/program.h"
 #include "calibrate/advice.h"
-#include "pose/free_numbers.h"
+#include "pose/adjust/free_numbers.h"
 
 namespace axial::apps {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/bytes/json.h"
-#include "pose/free_numbers.h"
+#include "pose/adjust/free_numbers.h"
 
 namespace axial::apps {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/output_name.h"
+#include "base/program/output_name.h"
 #include "base/version.h"
 #include "map/up_direction.h"
 #include "settings.h"

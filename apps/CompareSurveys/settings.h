@@ -8,7 +8,7 @@
 #include <string>
 
 #include "axial/compare.h"
-#include "base/program.h"
+#include "base/program/program.h"
 #include "boundary/options.h"
 
 namespace axial::apps {

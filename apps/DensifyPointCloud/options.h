@@ -5,7 +5,7 @@
 #pragma once
 
 #include "axial/densify.h"
-#include "base/program.h"
+#include "base/program/program.h"
 
 namespace axial::apps {
 

@@ -4,7 +4,7 @@
 #include <initializer_list>
 #include <string>
 
-#include "base/option_values.h"
+#include "base/program/option_values.h"
 
 namespace axial::apps {
 namespace {

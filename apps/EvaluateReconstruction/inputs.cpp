@@ -5,7 +5,7 @@
 
 #include "base/file_extension.h"
 #include "base/log.h"
-#include "base/unused_input.h"
+#include "base/program/unused_input.h"
 #include "cloud_parts.h"
 #include "io/cameras/geo_offset.h"
 #include "io/colmap/colmap_frame.h"

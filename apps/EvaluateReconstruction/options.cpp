@@ -6,10 +6,10 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "base/option_values.h"
 #include "base/parse_number.h"
+#include "base/program/option_values.h"
+#include "base/program/unused_input.h"
 #include "base/split.h"
-#include "base/unused_input.h"
 #include "base/version.h"
 
 namespace axial::apps {

@@ -7,7 +7,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "base/program.h"
+#include "base/program/program.h"
 #include "base/same_file.h"
 #include "base/version.h"
 #include "io/bytes/json.h"

@@ -13,7 +13,7 @@
 #include "base/context.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "base/program.h"
+#include "base/program/program.h"
 #include "base/same_file.h"
 #include "io/images/image.h"
 #include "options.h"

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "base/program.h"
-#include "targets/family.h"
+#include "base/program/program.h"
+#include "targets/codes/family.h"
 
 namespace axial::apps {
 

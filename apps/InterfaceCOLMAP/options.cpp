@@ -5,9 +5,9 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "base/option_values.h"
-#include "base/output_name.h"
-#include "base/unused_input.h"
+#include "base/program/option_values.h"
+#include "base/program/output_name.h"
+#include "base/program/unused_input.h"
 #include "base/version.h"
 
 namespace axial::apps {

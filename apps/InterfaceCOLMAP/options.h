@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "base/program.h"
+#include "base/program/program.h"
 #include "io/colmap/colmap_masks.h"
 
 namespace axial::apps {

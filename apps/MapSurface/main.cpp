@@ -14,9 +14,9 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/naming.h"
-#include "base/option_values.h"
 #include "base/output_lock.h"
 #include "base/parallel.h"
+#include "base/program/option_values.h"
 #include "belong/surface_check.h"
 #include "boundary/boundary.h"
 #include "boundary/cut_mesh.h"
@@ -34,8 +34,8 @@
 #include "scene/marked_faces.h"
 #include "settings.h"
 #include "survey/photographs.h"
-#include "texture/face_views.h"
-#include "texture/photograph_source.h"
+#include "texture/faces/face_views.h"
+#include "texture/faces/photograph_source.h"
 
 namespace axial::apps {
 namespace {

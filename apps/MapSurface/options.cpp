@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/option_values.h"
-#include "base/output_name.h"
 #include "base/parse_number.h"
+#include "base/program/option_values.h"
+#include "base/program/output_name.h"
 #include "base/split.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "axial/survey.h"
-#include "base/program.h"
+#include "base/program/program.h"
 #include "boundary/options.h"
 #include "map/height_error.h"
 #include "map/map_copies.h"

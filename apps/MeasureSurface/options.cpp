@@ -2,7 +2,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/output_name.h"
+#include "base/program/output_name.h"
 #include "base/version.h"
 #include "settings.h"
 

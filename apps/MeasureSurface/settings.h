@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "base/program.h"
+#include "base/program/program.h"
 #include "map/map_place.h"
 
 namespace axial::apps {

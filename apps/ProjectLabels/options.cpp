@@ -2,7 +2,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/output_name.h"
+#include "base/program/output_name.h"
 #include "base/version.h"
 #include "io/openmvs/scene_files.h"
 #include "io/openmvs/scene_options.h"

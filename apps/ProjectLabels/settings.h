@@ -5,7 +5,7 @@
 #include <string>
 
 #include "axial/survey.h"
-#include "base/program.h"
+#include "base/program/program.h"
 #include "labels/joined_labels.h"
 #include "map/map_place.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/option_values.h"
-#include "base/output_name.h"
+#include "base/program/option_values.h"
+#include "base/program/output_name.h"
 #include "base/version.h"
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/scene_options.h"

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "axial/survey.h"
-#include "base/program.h"
-#include "base/tiling.h"
+#include "base/program/program.h"
+#include "base/program/tiling.h"
 #include "boundary/options.h"
 #include "mesh/reconstruct.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
 
-#include "base/output_name.h"
+#include "base/program/output_name.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"
 #include "io/obj/mesh_file.h"

@@ -7,7 +7,7 @@
 
 #include "axial/refine.h"
 #include "axial/survey.h"
-#include "base/program.h"
+#include "base/program/program.h"
 #include "mesh/clean.h"
 
 namespace axial::apps {

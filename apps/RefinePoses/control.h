@@ -9,7 +9,7 @@
 #include "control/control.h"
 #include "pose/refine.h"
 #include "scene/local_frame.h"
-#include "targets/family.h"
+#include "targets/codes/family.h"
 
 namespace axial::apps {
 

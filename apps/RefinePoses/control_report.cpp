@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "pose/uncertainty.h"
+#include "pose/adjust/uncertainty.h"
 
 namespace axial::apps {
 namespace {

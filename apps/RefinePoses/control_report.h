@@ -9,7 +9,7 @@
 
 #include "control.h"
 #include "control/target_places.h"
-#include "pose/control_fit.h"
+#include "pose/control/control_fit.h"
 #include "scene/local_frame.h"
 
 namespace axial::apps {

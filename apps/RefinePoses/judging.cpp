@@ -4,8 +4,8 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "diagnosis/words.h"
-#include "pose/known.h"
-#include "pose/uncertainty.h"
+#include "pose/adjust/uncertainty.h"
+#include "pose/bundle/known.h"
 #include "stages.h"
 
 namespace axial::apps {

@@ -10,7 +10,7 @@
 #include "base/log.h"
 #include "io/colmap/colmap_database.h"
 #include "pose/colmap_bundle.h"
-#include "pose/register_photographs.h"
+#include "pose/registration/register_photographs.h"
 #include "scene/decompositions.h"
 
 namespace axial::apps {

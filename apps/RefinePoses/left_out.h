@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "io/colmap/colmap.h"
-#include "pose/feature_matches.h"
 #include "pose/refine.h"
+#include "pose/registration/feature_matches.h"
 
 namespace axial::apps {
 

@@ -3,7 +3,7 @@
 #include "base/log.h"
 #include "effective_lens.h"
 #include "found_targets.h"
-#include "pose/uncertainty.h"
+#include "pose/adjust/uncertainty.h"
 #include "stages.h"
 
 namespace axial::apps {

@@ -2,7 +2,7 @@
 #include "options.h"
 
 #include "base/error.h"
-#include "base/unused_input.h"
+#include "base/program/unused_input.h"
 #include "base/version.h"
 #include "usual_housing.h"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "base/program.h"
+#include "base/program/program.h"
 #include "control.h"
-#include "pose/free_numbers.h"
+#include "pose/adjust/free_numbers.h"
 #include "pose/refine.h"
 #include "rigs.h"
 #include "scale_from.h"

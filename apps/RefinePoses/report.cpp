@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "io/bytes/json.h"
-#include "pose/free_numbers.h"
-#include "pose/uncertainty.h"
+#include "pose/adjust/free_numbers.h"
+#include "pose/adjust/uncertainty.h"
 #include "rigs.h"
 
 namespace axial::apps {

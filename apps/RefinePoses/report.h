@@ -8,8 +8,8 @@
 
 #include "control_report.h"
 #include "left_out.h"
+#include "pose/adjust/uncertainty.h"
 #include "pose/refine.h"
-#include "pose/uncertainty.h"
 
 namespace axial::apps {
 

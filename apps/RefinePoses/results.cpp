@@ -4,12 +4,12 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "base/out_of_memory.h"
+#include "base/program/out_of_memory.h"
 #include "control/target_places.h"
 #include "io/cameras/geo_offset.h"
 #include "io/colmap/colmap_frame.h"
-#include "pose/depth_sigma.h"
-#include "pose/uncertainty.h"
+#include "pose/adjust/depth_sigma.h"
+#include "pose/adjust/uncertainty.h"
 #include "stages.h"
 
 namespace axial::apps {

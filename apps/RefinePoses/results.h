@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "pose/uncertainty.h"
+#include "pose/adjust/uncertainty.h"
 #include "report.h"
 
 namespace axial::apps {

@@ -13,8 +13,8 @@
 #include "base/error.h"
 #include "io/cameras/photograph_times.h"
 #include "io/colmap/rigs.h"
-#include "pose/rig_fit.h"
-#include "pose/uncertainty.h"
+#include "pose/adjust/uncertainty.h"
+#include "pose/bundle/rig_fit.h"
 
 namespace axial::apps {
 namespace {

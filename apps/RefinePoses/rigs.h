@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "base/option_list.h"
+#include "base/program/option_list.h"
 #include "io/colmap/colmap.h"
-#include "pose/adjust_options.h"
+#include "pose/adjust/uncertainty.h"
+#include "pose/bundle/adjust_options.h"
 #include "pose/rig_frames.h"
-#include "pose/uncertainty.h"
 
 namespace axial::apps {
 

@@ -12,7 +12,7 @@
 #include "base/parse_number.h"
 #include "io/cameras/image_positions.h"
 #include "io/cameras/position_file.h"
-#include "pose/known.h"
+#include "pose/bundle/known.h"
 #include "scene/robust_similarity.h"
 
 namespace axial::apps {

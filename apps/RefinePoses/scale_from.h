@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/context.h"
-#include "base/unused_input.h"
-#include "pose/adjust_options.h"
+#include "base/program/unused_input.h"
+#include "pose/bundle/adjust_options.h"
 
 namespace axial::apps {
 

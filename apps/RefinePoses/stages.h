@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "base/context.h"
-#include "base/unused_input.h"
+#include "base/program/unused_input.h"
 #include "control.h"
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
 #include "left_out.h"
 #include "options.h"
+#include "pose/adjust/uncertainty.h"
+#include "pose/bundle/housing_numbers.h"
 #include "pose/colmap_bundle.h"
-#include "pose/housing_numbers.h"
 #include "pose/refine.h"
-#include "pose/uncertainty.h"
 #include "report.h"
 #include "scene/local_frame.h"
 

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "base/option_values.h"
 #include "base/parse_number.h"
+#include "base/program/option_values.h"
 #include "base/split.h"
 #include "base/version.h"
 #include "experiments/chained.h"

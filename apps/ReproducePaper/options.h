@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/program.h"
+#include "base/program/program.h"
 #include "experiments/completeness.h"
 #include "experiments/experiment.h"
 

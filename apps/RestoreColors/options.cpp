@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "base/memory.h"
-#include "base/option_values.h"
 #include "base/parse_number.h"
+#include "base/program/option_values.h"
 #include "base/split.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "axial/survey.h"
-#include "base/program.h"
+#include "base/program/program.h"
 #include "color/daylight.h"
 #include "color/observations.h"
 #include "color/restore.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/program.h"
+#include "base/program/program.h"
 #include "simulate/presets.h"
 #include "simulate/second_camera.h"
 

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "io/bytes/json.h"
-#include "targets/pattern.h"
+#include "targets/codes/pattern.h"
 #include "write_scene.h"
 
 namespace axial::apps {

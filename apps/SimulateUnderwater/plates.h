@@ -7,7 +7,7 @@
 
 #include "arguments.h"
 #include "simulate/plates.h"
-#include "targets/family.h"
+#include "targets/codes/family.h"
 
 namespace axial::apps {
 

@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/naming.h"
 #include "base/output_lock.h"
-#include "base/tiling.h"
+#include "base/program/tiling.h"
 #include "belong/surface_check.h"
 #include "boundary/cut_mesh.h"
 #include "boundary/scene_boundary.h"
@@ -19,7 +19,7 @@
 #include "scene/check_mesh.h"
 #include "settings.h"
 #include "survey/photographs.h"
-#include "texture/photograph_source.h"
+#include "texture/faces/photograph_source.h"
 
 namespace axial::apps {
 namespace {

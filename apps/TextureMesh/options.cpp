@@ -3,10 +3,10 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/option_values.h"
-#include "base/output_name.h"
+#include "base/program/option_values.h"
+#include "base/program/output_name.h"
+#include "base/program/tiling.h"
 #include "base/split.h"
-#include "base/tiling.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"
 #include "io/openmvs/scene_files.h"

@@ -9,7 +9,7 @@
 
 #include "axial/survey.h"
 #include "axial/texture.h"
-#include "base/program.h"
+#include "base/program/program.h"
 #include "boundary/options.h"
 #include "io/textured/textured_mesh.h"
 

@@ -15,7 +15,7 @@
 #include "base/file_extension.h"
 #include "base/log.h"
 #include "base/output_lock.h"
-#include "base/output_name.h"
+#include "base/program/output_name.h"
 #include "base/same_file.h"
 #include "belong/surface_check.h"
 #include "converted_mesh.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/output_name.h"
+#include "base/program/output_name.h"
 #include "evaluate/alignment.h"
 #include "geometry/sampling.h"
 #include "io/openmvs/point_source.h"

@@ -6,7 +6,7 @@
 
 #include "axial/survey.h"
 #include "base/file_extension.h"
-#include "base/program.h"
+#include "base/program/program.h"
 
 namespace axial::apps {
 

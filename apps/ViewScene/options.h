@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "axial/survey.h"
-#include "base/program.h"
+#include "base/program/program.h"
 #include "depth_maps.h"
 #include "maps.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "base/option_list.h"
-#include "base/program.h"
+#include "base/program/option_list.h"
+#include "base/program/program.h"
 
 namespace axial::boundary {
 

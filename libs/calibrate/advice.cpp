@@ -11,7 +11,7 @@
 #include "calibrate/board_pose.h"
 #include "calibrate/information.h"
 #include "io/cameras/housing.h"
-#include "pose/free_numbers.h"
+#include "pose/adjust/free_numbers.h"
 
 namespace axial::calibrate {
 namespace {

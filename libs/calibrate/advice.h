@@ -15,7 +15,7 @@
 namespace axial::calibrate {
 
 // The largest acceptable standard deviations of the free numbers of a camera
-// (pose/housing_change.h). The focal length has no limit.
+// (pose/bundle/housing_change.h). The focal length has no limit.
 struct Limits {
   double normal = 0.1 * std::numbers::pi / 180;  // tilts of a flat port's normal [rad]
   double place = 0.001;      // a flat port's distance; a coordinate of a dome's centre [m]
@@ -36,7 +36,7 @@ std::vector<std::string> gaps(const Calibration& calibration);
 struct NextPhotograph {
   PlacedBoard board;
   // The expected standard deviations of the numbers of the camera, with this photograph added, in
-  // the units of pose/housing_change.h. 0 for a number that is not free.
+  // the units of pose/bundle/housing_change.h. 0 for a number that is not free.
   pose::HousingChange<double> sigmas;
 };
 

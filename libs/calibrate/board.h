@@ -2,7 +2,7 @@
 // Flat calibration targets. see_board.h finds them in photographs.
 #pragma once
 
-#include "targets/board.h"
+#include "targets/codes/board.h"
 
 namespace axial::calibrate {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "base/error.h"
-#include "pose/adjust.h"
+#include "pose/adjust/adjust.h"
 #include "scene/decompositions.h"
 
 namespace axial::calibrate {

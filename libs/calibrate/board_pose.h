@@ -3,7 +3,7 @@
 // guess.
 #pragma once
 
-#include "pose/bundle.h"
+#include "pose/bundle/bundle.h"
 
 namespace axial::calibrate {
 

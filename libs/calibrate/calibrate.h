@@ -4,8 +4,8 @@
 #pragma once
 
 #include "calibrate/board_bundle.h"
-#include "pose/adjust.h"
-#include "pose/uncertainty.h"
+#include "pose/adjust/adjust.h"
+#include "pose/adjust/uncertainty.h"
 
 namespace axial::calibrate {
 

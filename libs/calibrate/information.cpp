@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pose/observation_cost.h"
+#include "pose/bundle/observation_cost.h"
 #include "scene/decompositions.h"
 
 namespace axial::calibrate {

@@ -5,12 +5,13 @@
 // corners of the board as points.
 #pragma once
 
-#include "pose/adjust_options.h"
+#include "pose/bundle/adjust_options.h"
 
 namespace axial::calibrate {
 
 // The information matrix of the numbers of a camera, in the order and units of
-// pose/housing_change.h. If all numbers are free, the inverse of this matrix is their covariance.
+// pose/bundle/housing_change.h. If all numbers are free, the inverse of this matrix is their
+// covariance.
 using Information = Eigen::Matrix<double, pose::kHousingNumbers, pose::kHousingNumbers>;
 
 // The information of the observations of the image with the index `image` in bundle.images, if
@@ -25,8 +26,8 @@ Information total_information(const pose::Bundle& bundle, const pose::AdjustOpti
                               double pixel_sigma);
 
 // The standard deviations of the numbers that `options` declares free (options.free), in the units
-// of pose/housing_change.h. The value is very large, but finite, for a number that `information`
-// does not determine, and 0 for a number that is not free.
+// of pose/bundle/housing_change.h. The value is very large, but finite, for a number that
+// `information` does not determine, and 0 for a number that is not free.
 pose::HousingChange<double> sigmas_from(const Information& information,
                                         const pose::AdjustOptions& options);
 

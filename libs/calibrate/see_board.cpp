@@ -7,7 +7,7 @@
 
 #include "calibrate/piece.h"
 #include "calibrate/whole_board.h"
-#include "targets/marker_board.h"
+#include "targets/codes/marker_board.h"
 
 namespace axial::calibrate {
 namespace {

@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "base/output_lock.h"
 #include "base/parallel.h"
-#include "base/tiling.h"
+#include "base/program/tiling.h"
 #include "densify/agreement_check.h"
 #include "densify/cloud_exports.h"
 #include "densify/depth_stage.h"

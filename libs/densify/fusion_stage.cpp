@@ -12,7 +12,7 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "base/tiling.h"
+#include "base/program/tiling.h"
 #include "cloud/colors.h"
 #include "cloud/crop.h"
 #include "cloud/normals.h"

@@ -6,7 +6,7 @@
 
 #include "axial/densify.h"
 #include "base/error.h"
-#include "base/tiling.h"
+#include "base/program/tiling.h"
 
 namespace axial::densify {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/tiling.h"
+#include "base/program/tiling.h"
 #include "io/artifacts/artifact.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/housing.h"

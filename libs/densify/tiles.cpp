@@ -7,7 +7,7 @@
 
 #include "base/file_extension.h"
 #include "base/parallel.h"
-#include "base/tiling.h"
+#include "base/program/tiling.h"
 
 namespace axial::densify {
 namespace fs = std::filesystem;

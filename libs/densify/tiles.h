@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tiles in which a cloud is fused, and their files. The tiles follow from the sparse cloud
 // alone, so that runs on several machines divide the scene in the same way. The cloud of a tile is
-// the file tile_file() of base/tiling.h, with a mark in its side file.
+// the file tile_file() of base/program/tiling.h, with a mark in its side file.
 #pragma once
 
 #include <cstddef>

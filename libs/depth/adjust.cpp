@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "depth/filters.h"
-#include "depth/ray_caster.h"
+#include "depth/views/ray_caster.h"
 
 namespace axial::depth {
 namespace {

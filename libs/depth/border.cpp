@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "depth/ray_caster.h"
-#include "depth/warp.h"
+#include "depth/views/ray_caster.h"
+#include "depth/views/warp.h"
 #include "scene/camera_list.h"
 
 namespace axial::depth {

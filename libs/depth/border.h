@@ -7,8 +7,8 @@
 
 #include <opencv2/core.hpp>
 
+#include "depth/patch/reference_patch.h"
 #include "depth/patch_match.h"
-#include "depth/reference_patch.h"
 #include "scene/depth_map.h"
 
 namespace axial::depth {

@@ -8,12 +8,12 @@
 
 #include "base/error.h"
 #include "base/huge_pages.h"
-#include "depth/lane_matcher.h"
-#include "depth/matcher.h"
 #include "depth/plane_map.h"
-#include "depth/ray_caster.h"
 #include "depth/sparse_init.h"
-#include "depth/sweep.h"
+#include "depth/sweep/lane_matcher.h"
+#include "depth/sweep/matcher.h"
+#include "depth/sweep/sweep.h"
+#include "depth/views/ray_caster.h"
 #include "scene/camera_list.h"
 
 namespace axial::depth {

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "pose/housing_numbers.h"
+#include "pose/bundle/housing_numbers.h"
 #include "scene/camera_model.h"
 
 namespace axial::diagnosis {
 
 // The groups of numbers of a port of this kind that can be wrong alone, as groups of numbers of
-// pose/housing_numbers.h: those of the index, of the place of the port, and of the focal length.
-// The thickness of the glass is not among them, because it is easy to measure.
+// pose/bundle/housing_numbers.h: those of the index, of the place of the port, and of the focal
+// length. The thickness of the glass is not among them, because it is easy to measure.
 std::vector<pose::NumberGroup> groups_to_free(pose::PortKind kind);
 
 // A number and two cameras that differ in it. The derivative of a pixel by the number is the

@@ -8,8 +8,8 @@
 #include "diagnosis/track_pictures.h"
 #include "diagnosis/track_sample.h"
 #include "diagnosis/words.h"
+#include "pose/bundle/tracks.h"
 #include "pose/colmap_bundle.h"
-#include "pose/tracks.h"
 
 namespace axial::diagnosis {
 namespace {

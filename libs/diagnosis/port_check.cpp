@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "base/order_statistics.h"
+#include "pose/bundle/tracks.h"
 #include "pose/refine.h"
-#include "pose/tracks.h"
 
 namespace axial::diagnosis {
 namespace {

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "pose/bundle.h"
+#include "pose/bundle/bundle.h"
 
 namespace axial::diagnosis {
 

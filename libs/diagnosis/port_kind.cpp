@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "diagnosis/track_sample.h"
-#include "pose/free_numbers.h"
-#include "pose/tracks.h"
+#include "pose/adjust/free_numbers.h"
+#include "pose/bundle/tracks.h"
 
 namespace axial::diagnosis {
 namespace {

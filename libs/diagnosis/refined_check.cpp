@@ -7,9 +7,9 @@
 #include "base/error.h"
 #include "diagnosis/hypotheses.h"
 #include "diagnosis/track_sample.h"
-#include "pose/free_numbers.h"
+#include "pose/adjust/free_numbers.h"
+#include "pose/adjust/uncertainty.h"
 #include "pose/refine.h"
-#include "pose/uncertainty.h"
 #include "scene/decompositions.h"
 
 namespace axial::diagnosis {

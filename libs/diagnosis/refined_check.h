@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "pose/adjust_options.h"
-#include "pose/housing_numbers.h"
+#include "pose/bundle/adjust_options.h"
+#include "pose/bundle/housing_numbers.h"
 
 namespace axial::diagnosis {
 

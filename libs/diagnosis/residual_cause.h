@@ -8,7 +8,7 @@
 
 #include "diagnosis/residual_pattern.h"
 #include "diagnosis/residuals.h"
-#include "pose/housing_numbers.h"
+#include "pose/bundle/housing_numbers.h"
 
 namespace axial::diagnosis {
 

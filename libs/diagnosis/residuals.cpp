@@ -8,7 +8,7 @@
 
 #include "base/order_statistics.h"
 #include "base/parallel.h"
-#include "pose/observation_cost.h"
+#include "pose/bundle/observation_cost.h"
 
 namespace axial::diagnosis {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "pose/bundle.h"
+#include "pose/bundle/bundle.h"
 #include "scene/any_camera.h"
 #include "scene/camera_model.h"
 

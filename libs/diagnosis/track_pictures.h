@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "io/colmap/colmap.h"
-#include "pose/bundle.h"
+#include "pose/bundle/bundle.h"
 
 namespace axial::diagnosis {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "io/colmap/colmap.h"
-#include "pose/adjust_options.h"
+#include "pose/bundle/adjust_options.h"
 
 namespace axial::diagnosis {
 

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
   try {
     throw std::bad_alloc();
   } catch (...) {
-    std::terminate();  // writes a line and ends the program (base/out_of_memory.h)
+    std::terminate();  // writes a line and ends the program (base/program/out_of_memory.h)
   }
 }
 

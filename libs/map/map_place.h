@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "base/option_list.h"
-#include "base/program.h"
+#include "base/program/option_list.h"
+#include "base/program/program.h"
 #include "map/world_axes.h"
 
 namespace axial::map {

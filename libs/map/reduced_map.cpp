@@ -10,7 +10,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/out_of_memory.h"
+#include "base/program/out_of_memory.h"
 #include "map/stated_kind.h"
 #include "private/gdal_calls.h"
 #include "private/map_metadata.h"

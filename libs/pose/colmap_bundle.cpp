@@ -13,8 +13,8 @@
 #include "io/colmap/colmap_lens.h"
 #include "io/colmap/colmap_scene.h"
 #include "lens/lens.h"
-#include "pose/tracks.h"
-#include "pose/uncertainty.h"
+#include "pose/adjust/uncertainty.h"
+#include "pose/bundle/tracks.h"
 
 namespace axial::pose {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
-#include "pose/adjust_options.h"
-#include "pose/uncertainty.h"
+#include "pose/adjust/uncertainty.h"
+#include "pose/bundle/adjust_options.h"
 
 namespace axial::pose {
 

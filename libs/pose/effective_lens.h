@@ -2,7 +2,7 @@
 // The lens that a pinhole engine needs for photographs through a port.
 #pragma once
 
-#include "pose/photograph_camera.h"
+#include "pose/bundle/photograph_camera.h"
 
 namespace axial::pose {
 

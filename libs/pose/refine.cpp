@@ -10,14 +10,14 @@
 
 #include "base/error.h"
 #include "base/order_statistics.h"
-#include "pose/adjust.h"
-#include "pose/control_fit.h"
-#include "pose/control_start.h"
-#include "pose/kept_numbers.h"
-#include "pose/known.h"
-#include "pose/observation_weights.h"
-#include "pose/rig_fit.h"
-#include "pose/uncertainty.h"
+#include "pose/adjust/adjust.h"
+#include "pose/adjust/kept_numbers.h"
+#include "pose/adjust/uncertainty.h"
+#include "pose/bundle/known.h"
+#include "pose/bundle/observation_weights.h"
+#include "pose/bundle/rig_fit.h"
+#include "pose/control/control_fit.h"
+#include "pose/control/control_start.h"
 #include "scene/decompositions.h"
 
 namespace axial::pose {

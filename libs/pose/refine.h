@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "pose/adjust.h"
-#include "pose/position_sigma.h"
-#include "pose/target_points.h"
-#include "pose/tracks.h"
+#include "pose/adjust/adjust.h"
+#include "pose/adjust/position_sigma.h"
+#include "pose/bundle/tracks.h"
+#include "pose/control/target_points.h"
 
 namespace axial::pose {
 

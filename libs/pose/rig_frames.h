@@ -9,7 +9,7 @@
 #include "io/cameras/photograph_times.h"
 #include "io/colmap/colmap.h"
 #include "io/colmap/rigs.h"
-#include "pose/rig.h"
+#include "pose/bundle/rig.h"
 
 namespace axial::pose {
 

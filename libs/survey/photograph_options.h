@@ -2,8 +2,8 @@
 // Options about photographs that several programs have.
 #pragma once
 
-#include "base/option_list.h"
-#include "base/program.h"
+#include "base/program/option_list.h"
+#include "base/program/program.h"
 #include "survey/survey.h"
 
 namespace axial::survey {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "targets/pattern.h"
+#include "targets/codes/pattern.h"
 
 namespace axial::targets {
 namespace {

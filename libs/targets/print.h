@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "targets/family.h"
+#include "targets/codes/family.h"
 
 namespace axial::targets {
 

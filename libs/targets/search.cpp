@@ -6,7 +6,7 @@
 #include "base/first_error.h"
 #include "base/parallel.h"
 #include "io/images/image.h"
-#include "targets/find_targets.h"
+#include "targets/finders/find_targets.h"
 
 namespace axial::targets {
 namespace {

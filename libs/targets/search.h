@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/context.h"
-#include "targets/family.h"
+#include "targets/codes/family.h"
 #include "targets/targets_file.h"
 
 namespace axial::targets {

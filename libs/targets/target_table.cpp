@@ -11,7 +11,7 @@
 #include "base/parse_number.h"
 #include "base/split.h"
 #include "io/cameras/table_text.h"
-#include "targets/ring_codes.h"
+#include "targets/codes/ring_codes.h"
 
 namespace axial::targets {
 namespace {

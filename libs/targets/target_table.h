@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "targets/family.h"
+#include "targets/codes/family.h"
 
 namespace axial::targets {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "targets/detection.h"
-#include "targets/family.h"
+#include "targets/codes/family.h"
+#include "targets/fits/detection.h"
 
 namespace axial::targets {
 

@@ -4,9 +4,9 @@
 #include "axial/texture.h"
 #include "base/memory.h"
 #include "scene/check_mesh.h"
-#include "texture/face_labels.h"
-#include "texture/labels.h"
-#include "texture/split_faces.h"
+#include "texture/faces/face_labels.h"
+#include "texture/faces/labels.h"
+#include "texture/faces/split_faces.h"
 #include "texture/tile_painter.h"
 
 namespace axial::texture {

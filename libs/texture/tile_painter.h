@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "texture/atlas.h"
-#include "texture/face_labels.h"
-#include "texture/leveling.h"
-#include "texture/mesh_tiles.h"
+#include "texture/atlas/atlas.h"
+#include "texture/colors/leveling.h"
+#include "texture/faces/face_labels.h"
+#include "texture/faces/mesh_tiles.h"
 
 namespace axial::texture {
 

@@ -12,7 +12,7 @@
 #include "src/stage.h"
 #include "src/survey_call.h"
 #include "survey/photographs.h"
-#include "texture/photograph_source.h"
+#include "texture/faces/photograph_source.h"
 
 namespace axial::python {
 namespace {

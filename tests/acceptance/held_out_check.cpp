@@ -21,7 +21,7 @@
 #include "base/error.h"
 #include "base/order_statistics.h"
 #include "check_program.h"
-#include "depth/matcher.h"
+#include "depth/sweep/matcher.h"
 #include "io/cameras/housing.h"
 #include "io/cameras/lenses.h"
 #include "io/images/image.h"

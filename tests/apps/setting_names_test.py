@@ -11,7 +11,7 @@ from programs import main, new_folder, write
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # Files that parse or declare the options that they name.
-DECLARE_OPTIONS = {"libs/base/newer_options.cpp", "libs/base/option_values.cpp", "libs/base/program.cpp",
+DECLARE_OPTIONS = {"libs/base/program/newer_options.cpp", "libs/base/program/option_values.cpp", "libs/base/program/program.cpp",
                    "libs/boundary/options.cpp", "libs/io/openmvs/scene_options.cpp", "libs/map/map_place.cpp",
                    "libs/survey/photograph_options.cpp"}
 COMMAND_LINES = "libs/experiments/"  # puts together command lines of programs

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/bundled_data.h"
+#include "base/program/bundled_data.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "base/console.h"
 #include "base/parallel.h"
+#include "base/program/console.h"
 
 namespace axial {
 namespace {

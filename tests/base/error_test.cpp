@@ -10,7 +10,7 @@
 
 #include "base/log.h"
 #include "base/message.h"
-#include "base/program.h"
+#include "base/program/program.h"
 #include "support/captured_events.h"
 
 namespace axial {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rules of a table of options.
-#include "base/option_values.h"
+#include "base/program/option_values.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

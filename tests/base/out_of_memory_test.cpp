@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/out_of_memory.h"
+#include "base/program/out_of_memory.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "base/atomic_file.h"
 #include "base/parallel.h"
-#include "base/program.h"
+#include "base/program/program.h"
 #include "support/empty_folder.h"
 
 namespace axial {

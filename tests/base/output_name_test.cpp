@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/output_name.h"
+#include "base/program/output_name.h"
 
 #include <gmock/gmock.h>
 

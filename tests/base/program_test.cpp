@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/program.h"
+#include "base/program/program.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

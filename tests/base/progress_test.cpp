@@ -12,7 +12,7 @@
 #include <cstdlib>
 
 #include "base/log.h"
-#include "base/program.h"
+#include "base/program/program.h"
 
 namespace axial {
 namespace {

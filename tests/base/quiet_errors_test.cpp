@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/quiet_errors.h"
+#include "base/program/quiet_errors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/standard_streams.h"
+#include "base/program/standard_streams.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/unused_input.h"
+#include "base/program/unused_input.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/program.h"
+#include "base/program/program.h"
 #include "support/captured_events.h"
 #include "support/error_of.h"
 

@@ -15,7 +15,7 @@
 #include "benchmarks/cpu_time.h"
 #include "benchmarks/instruction_sets.h"
 #include "benchmarks/survey.h"
-#include "depth/sweep.h"
+#include "depth/sweep/sweep.h"
 
 namespace axial::benchmarks {
 namespace {

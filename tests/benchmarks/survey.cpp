@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "base/parallel.h"
-#include "depth/warp.h"
+#include "depth/views/warp.h"
 #include "drawn.h"
 #include "scene/camera_list.h"
 #include "support/textured_scene.h"

@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "depth/lane_matcher.h"
 #include "depth/patch_match.h"
 #include "depth/plane_map.h"
+#include "depth/sweep/lane_matcher.h"
 
 namespace axial::benchmarks {
 

@@ -9,7 +9,7 @@
 
 #include "calibrate/board_survey.h"
 #include "calibrate/see_board.h"
-#include "pose/bundle.h"
+#include "pose/bundle/bundle.h"
 #include "support/error_of.h"
 #include "support/photograph.h"
 

@@ -8,7 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/parallel.h"
-#include "base/tiling.h"
+#include "base/program/tiling.h"
 #include "densify/floor_fixture.h"
 #include "densify/memory_plan.h"
 #include "densify/tiles.h"

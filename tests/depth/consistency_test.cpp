@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "depth/reference_patch.h"
+#include "depth/patch/reference_patch.h"
 #include "refractive/flat_port_camera.h"
 
 namespace axial::depth {

@@ -9,8 +9,8 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-#include "depth/lane_matcher.h"
-#include "depth/matcher.h"
+#include "depth/sweep/lane_matcher.h"
+#include "depth/sweep/matcher.h"
 #include "drawn.h"
 #include "refractive/dome_port_camera.h"
 #include "refractive/flat_port_camera.h"

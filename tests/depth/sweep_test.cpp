@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which planes a sweep scores, and in which views. A mock matcher computes the scores by a formula.
-#include "depth/sweep.h"
+#include "depth/sweep/sweep.h"
 
 #include <gtest/gtest.h>
 

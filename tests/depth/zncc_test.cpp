@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "depth/zncc.h"
+#include "depth/patch/zncc.h"
 
 #include <gtest/gtest.h>
 

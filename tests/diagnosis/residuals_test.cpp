@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "diagnosis/residual_cause.h"
-#include "pose/adjust.h"
+#include "pose/adjust/adjust.h"
 #include "pose/survey.h"
 
 namespace axial::diagnosis {

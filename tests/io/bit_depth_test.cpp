@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "base/program.h"
+#include "base/program/program.h"
 #include "io/images/image.h"
 #include "support/captured_events.h"
 #include "support/empty_folder.h"

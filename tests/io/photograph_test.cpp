@@ -10,7 +10,7 @@
 #include <random>
 
 #include "base/atomic_file.h"
-#include "base/quiet_errors.h"
+#include "base/program/quiet_errors.h"
 #include "io/images/image.h"
 #include "io/wrong_input.h"
 

@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "base/atomic_file.h"
-#include "base/out_of_memory.h"
+#include "base/program/out_of_memory.h"
 #include "map/stated_kind.h"
 #include "support/empty_folder.h"
 #include "support/error_of.h"

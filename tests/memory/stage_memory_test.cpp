@@ -31,7 +31,7 @@
 #include "support/analytic_scene.h"
 #include "support/empty_folder.h"
 #include "survey/image_store.h"
-#include "texture/adjacency.h"
+#include "texture/faces/adjacency.h"
 
 namespace axial {
 namespace {

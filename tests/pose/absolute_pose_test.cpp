@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Poses of single photographs from known points.
-#include "pose/absolute_pose.h"
+#include "pose/registration/absolute_pose.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <random>
 
 #include "drawn.h"
-#include "pose/p3p.h"
-#include "pose/sightings.h"
+#include "pose/registration/p3p.h"
+#include "pose/registration/sightings.h"
 #include "pose/survey.h"
 
 namespace axial::pose {

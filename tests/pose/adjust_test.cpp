@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pose/adjust.h"
+#include "pose/adjust/adjust.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 
 #include "base/order_statistics.h"
 #include "drawn.h"
-#include "pose/depth_sigma.h"
+#include "pose/adjust/depth_sigma.h"
+#include "pose/adjust/uncertainty.h"
 #include "pose/survey.h"
-#include "pose/uncertainty.h"
 #include "support/error_of.h"
 
 namespace axial::pose {

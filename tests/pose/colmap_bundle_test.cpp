@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "pose/adjust.h"
+#include "pose/adjust/adjust.h"
+#include "pose/adjust/uncertainty.h"
 #include "pose/colmap_survey.h"
-#include "pose/uncertainty.h"
 #include "support/error_of.h"
 
 namespace axial::pose {

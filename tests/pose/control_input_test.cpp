@@ -7,7 +7,7 @@
 #include "../../apps/RefinePoses/control_report.h"
 #include "base/atomic_file.h"
 #include "io/bytes/json.h"
-#include "pose/adjust.h"
+#include "pose/adjust/adjust.h"
 #include "pose/survey.h"
 #include "support/empty_folder.h"
 #include "support/error_of.h"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "pose/adjust.h"
+#include "pose/adjust/adjust.h"
 #include "pose/survey.h"
 
 namespace axial::pose {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pose/kept_numbers.h"
+#include "pose/adjust/kept_numbers.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <random>
 
-#include "pose/uncertainty.h"
+#include "pose/adjust/uncertainty.h"
 
 namespace axial::pose {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lengths and positions known in metres determine the scale of a bundle, or are reported if they
 // cannot.
-#include "pose/known.h"
+#include "pose/bundle/known.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

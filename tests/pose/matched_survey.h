@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "pose/feature_matches.h"
+#include "pose/registration/feature_matches.h"
 #include "pose/survey.h"
 
 namespace axial::pose::testing {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pose/observation_cost.h"
+#include "pose/bundle/observation_cost.h"
 
 #include <ceres/jet.h>
 #include <ceres/rotation.h>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pose/observation_weights.h"
+#include "pose/bundle/observation_weights.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "drawn.h"
+#include "pose/adjust/uncertainty.h"
 #include "pose/refine.h"
 #include "pose/survey.h"
-#include "pose/uncertainty.h"
 
 namespace axial::pose {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pose/photograph_camera.h"
+#include "pose/bundle/photograph_camera.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Known positions: wrong ones are found, and the accuracy of the others is estimated.
-#include "pose/position_sigma.h"
+#include "pose/adjust/position_sigma.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <random>
 
 #include "drawn.h"
-#include "pose/known.h"
+#include "pose/bundle/known.h"
 #include "pose/survey.h"
 #include "scene/decompositions.h"
 

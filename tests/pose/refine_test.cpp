@@ -10,8 +10,8 @@
 #include <stop_token>
 
 #include "drawn.h"
+#include "pose/adjust/uncertainty.h"
 #include "pose/survey.h"
-#include "pose/uncertainty.h"
 
 namespace axial::pose {
 namespace {

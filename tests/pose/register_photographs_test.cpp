@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Photographs without poses among refined ones.
-#include "pose/register_photographs.h"
+#include "pose/registration/register_photographs.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -11,10 +11,10 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/out_of_memory.h"
+#include "base/program/out_of_memory.h"
 #include "io/bytes/json.h"
+#include "pose/adjust/uncertainty.h"
 #include "pose/survey.h"
-#include "pose/uncertainty.h"
 #include "support/empty_folder.h"
 #include "support/error_of.h"
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rigs in bundle adjustment: their poses, the scale that they give, and cameras that are late.
-#include "pose/rig.h"
+#include "pose/bundle/rig.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <random>
 
-#include "pose/adjust.h"
+#include "pose/adjust/adjust.h"
+#include "pose/adjust/uncertainty.h"
+#include "pose/bundle/rig_fit.h"
 #include "pose/refine.h"
-#include "pose/rig_fit.h"
 #include "pose/rig_survey.h"
-#include "pose/uncertainty.h"
 
 namespace axial::pose {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pose/sparse_cholesky.h"
+#include "pose/adjust/sparse_cholesky.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "drawn.h"
-#include "pose/adjust.h"
+#include "pose/adjust/adjust.h"
 #include "pose/refine.h"
 #include "scene/decompositions.h"
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "pose/adjust_options.h"
+#include "pose/bundle/adjust_options.h"
 
 namespace axial::pose::testing {
 

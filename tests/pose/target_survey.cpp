@@ -7,7 +7,7 @@
 #include <optional>
 #include <random>
 
-#include "pose/target_shape.h"
+#include "pose/control/target_shape.h"
 
 namespace axial::pose::testing {
 namespace {

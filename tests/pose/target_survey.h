@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "pose/control/target_points.h"
 #include "pose/survey.h"
-#include "pose/target_points.h"
 
 namespace axial::pose::testing {
 

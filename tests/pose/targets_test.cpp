@@ -5,14 +5,14 @@
 
 #include <random>
 
-#include "pose/control_fit.h"
-#include "pose/control_start.h"
-#include "pose/free_motions.h"
-#include "pose/known.h"
+#include "pose/adjust/uncertainty.h"
+#include "pose/bundle/free_motions.h"
+#include "pose/bundle/known.h"
+#include "pose/control/control_fit.h"
+#include "pose/control/control_start.h"
+#include "pose/control/target_shape.h"
 #include "pose/refine.h"
-#include "pose/target_shape.h"
 #include "pose/target_survey.h"
-#include "pose/uncertainty.h"
 #include "scene/decompositions.h"
 
 namespace axial::pose {

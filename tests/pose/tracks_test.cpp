@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pose/tracks.h"
+#include "pose/bundle/tracks.h"
 
 #include <gtest/gtest.h>
 

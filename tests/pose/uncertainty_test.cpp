@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Compares the standard deviations of bundle adjustment with a dense inverse.
-#include "pose/uncertainty.h"
+#include "pose/adjust/uncertainty.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <random>
 
-#include "pose/adjust_options.h"
+#include "pose/bundle/adjust_options.h"
 #include "pose/survey.h"
 
 namespace axial::pose {

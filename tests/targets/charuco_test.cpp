@@ -10,7 +10,7 @@
 #include <random>
 
 #include "support/error_of.h"
-#include "targets/find_targets.h"
+#include "targets/finders/find_targets.h"
 
 namespace axial::targets {
 namespace {

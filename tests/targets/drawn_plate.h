@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-#include "targets/pattern.h"
+#include "targets/codes/pattern.h"
 
 namespace axial::test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "targets/find_targets.h"
+#include "targets/finders/find_targets.h"
 
 #include <gmock/gmock.h>
 

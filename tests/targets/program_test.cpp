@@ -10,8 +10,8 @@
 #include "io/bytes/json.h"
 #include "io/images/image.h"
 #include "support/program_run.h"
+#include "targets/codes/ring_codes.h"
 #include "targets/drawn_plate.h"
-#include "targets/ring_codes.h"
 
 namespace axial::targets {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "targets/ring_codes.h"
+#include "targets/codes/ring_codes.h"
 
 #include <gmock/gmock.h>
 

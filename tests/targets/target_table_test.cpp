@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/wrong_input.h"
-#include "targets/ring_codes.h"
+#include "targets/codes/ring_codes.h"
 
 namespace axial::targets {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "texture/atlas.h"
+#include "texture/atlas/atlas.h"
 
 #include <gtest/gtest.h>
 

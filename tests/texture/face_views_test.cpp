@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "texture/face_views.h"
+#include "texture/faces/face_views.h"
 
 #include <gtest/gtest.h>
 
 #include "scene/camera_model.h"
-#include "texture/outliers.h"
+#include "texture/faces/outliers.h"
 #include "texture/painted_room.h"
 
 namespace axial::texture {

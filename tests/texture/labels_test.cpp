@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "texture/labels.h"
+#include "texture/faces/labels.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "texture/leveling.h"
+#include "texture/colors/leveling.h"
 
 #include <gtest/gtest.h>
 
-#include "texture/adjacency.h"
-#include "texture/chart_field.h"
+#include "texture/colors/chart_field.h"
+#include "texture/faces/adjacency.h"
 #include "texture/painted_room.h"
 
 namespace axial::texture {

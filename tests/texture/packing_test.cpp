@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "texture/packing.h"
+#include "texture/atlas/packing.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

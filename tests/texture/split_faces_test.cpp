@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "texture/split_faces.h"
+#include "texture/faces/split_faces.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "support/error_of.h"
-#include "texture/face_views.h"
+#include "texture/faces/face_views.h"
 #include "texture/painted_room.h"
 
 namespace axial::texture {

@@ -11,8 +11,8 @@
 #include "base/parallel.h"
 #include "geometry/faces.h"
 #include "support/error_of.h"
-#include "texture/face_labels.h"
-#include "texture/face_views.h"
+#include "texture/faces/face_labels.h"
+#include "texture/faces/face_views.h"
 #include "texture/painted_room.h"
 
 namespace axial::texture {

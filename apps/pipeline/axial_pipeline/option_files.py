@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The options among the words of a program's command, and the files and folders that they name. A
 program looks up relative paths in its working folder (-w), and reads further options from a file there
-(libs/base/program.h).
+(libs/base/program/program.h).
 
 A program takes the begin of an option for the option, such as --mask-pa for --mask-path, and refuses a
 begin that several of its options have. So `reconstruct` takes every begin of an option for the option

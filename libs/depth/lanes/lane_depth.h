@@ -4,7 +4,7 @@
 
 #include "depth/consistency.h"
 #include "depth/lanes/lane_images.h"
-#include "depth/reference_patch.h"
+#include "depth/patch/reference_patch.h"
 #include "refractive/axial_ray.h"
 
 namespace axial::depth::lanes {

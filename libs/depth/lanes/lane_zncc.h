@@ -4,8 +4,8 @@
 
 #include "depth/lanes/lane_images.h"
 #include "depth/lanes/lane_texel.h"
-#include "depth/part_sums.h"
-#include "depth/reference_patch.h"
+#include "depth/patch/part_sums.h"
+#include "depth/patch/reference_patch.h"
 
 namespace axial::depth::lanes {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/output_name.h"
+#include "base/program/output_name.h"
 #include "io/bytes/json.h"
 #include "io/bytes/json_place.h"
 

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/output_name.h"
+#include "base/program/output_name.h"
 #include "cameras/private/image_names.h"
 #include "cameras/private/port_json.h"
 #include "scene/camera_model.h"

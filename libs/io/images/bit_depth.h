@@ -8,7 +8,7 @@
 #include <string>
 
 #include "axial/base.h"
-#include "base/option_list.h"
+#include "base/program/option_list.h"
 #include "io/images/image.h"
 
 namespace axial::io {

@@ -12,7 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/quiet_errors.h"
+#include "base/program/quiet_errors.h"
 #include "images/private/image_codecs.h"
 #include "images/private/opencv_codecs.h"
 #include "scene/resolution.h"

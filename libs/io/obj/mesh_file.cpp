@@ -11,7 +11,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_extension.h"
-#include "base/output_name.h"
+#include "base/program/output_name.h"
 #include "io/openmvs/scene_files.h"
 #include "io/ply/ply.h"
 #include "textured/private/gltf_file.h"

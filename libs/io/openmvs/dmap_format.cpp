@@ -13,7 +13,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-enum Content : std::uint8_t { kDepth = 1, kNormals = 2, kConfidence = 4, kViews = 8 };
+enum Content : std::uint8_t { kHasDepth = 1, kHasNormals = 2, kHasConfidence = 4, kHasViews = 8 };
 
 template <class Pixel>
 void read_pixels(ByteReader& in, cv::Mat_<Pixel>& image, const char* field) {
@@ -68,9 +68,9 @@ void write_pixels(ByteWriter& out, const cv::Mat_<Pixel>& image) {
 
 void write_header(ByteWriter& out, const DepthMap& map, const std::pair<float, float>& range,
                   const std::string& image) {
-  unsigned content = kDepth;
-  if (!map.normal.empty()) content |= kNormals;
-  if (!map.confidence.empty()) content |= kConfidence;
+  unsigned content = kHasDepth;
+  if (!map.normal.empty()) content |= kHasNormals;
+  if (!map.confidence.empty()) content |= kHasConfidence;
   out.text("DR");
   out.write(static_cast<std::uint8_t>(content));
   out.write(std::uint8_t{0});
@@ -96,15 +96,16 @@ void write_header(ByteWriter& out, const DepthMap& map, const std::pair<float, f
 }  // namespace
 
 std::uint64_t DmapHeader::bytes_of_pixels() const {
-  const std::uint64_t floats = 1 + (content & kNormals ? 3 : 0) + (content & kConfidence ? 1 : 0);
-  return pixels() * (floats * sizeof(float) + (content & kViews ? 4 : 0));
+  const std::uint64_t floats =
+      1 + (content & kHasNormals ? 3 : 0) + (content & kHasConfidence ? 1 : 0);
+  return pixels() * (floats * sizeof(float) + (content & kHasViews ? 4 : 0));
 }
 
 DmapHeader parse_dmap_header(ByteReader& in) {
   if (in.take(2, "magic") != "DR")
     fail_in(in.file(), "is not a .dmap file: it does not start with DR");
   const auto content = in.read<std::uint8_t>("content flags");
-  if (!(content & kDepth) || content > (kDepth | kNormals | kConfidence | kViews))
+  if (!(content & kHasDepth) || content > (kHasDepth | kHasNormals | kHasConfidence | kHasViews))
     fail_in(in.file(), "content flags are {}", content);
   in.read<std::uint8_t>("padding");
   const cv::Size image_size = read_size(in, "image size");
@@ -140,19 +141,19 @@ DepthMap parse_dmap(ByteReader& in) {
   in.require_room(pixels, sizeof(float), "depth");
   map.depth.create(size);
   read_pixels(in, map.depth, "depth");
-  if (content & kNormals) {
+  if (content & kHasNormals) {
     in.require_room(pixels, 3 * sizeof(float), "normals");
     map.normal.create(size);
     read_pixels(in, map.normal, "normal");
   } else {
     map.normal = cv::Mat3f(size, cv::Vec3f(0, 0, 0));
   }
-  if (content & kConfidence) {
+  if (content & kHasConfidence) {
     in.require_room(pixels, sizeof(float), "confidence");
     map.confidence.create(size);
     read_pixels(in, map.confidence, "confidence");
   }
-  if (content & kViews) in.take(4 * pixels, "views");
+  if (content & kHasViews) in.take(4 * pixels, "views");
   in.require_end();
   return std::move(header.map);
 }

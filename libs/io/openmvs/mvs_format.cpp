@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "openmvs/private/mvs_format.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <filesystem>
 

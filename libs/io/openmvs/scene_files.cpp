@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "base/output_name.h"
+#include "base/program/output_name.h"
 #include "io/cameras/geo_offset.h"
 
 namespace axial::io {

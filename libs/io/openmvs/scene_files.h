@@ -31,8 +31,8 @@ std::vector<std::filesystem::path> files_of_scene(const SceneFiles& files, const
 // ("-o scene_dense.mvs"), and would overwrite the scene's cloud. `given`: the value of the option
 // -o, as a path; empty: it was not given. `ending`: "_mesh", "_refine" or "_texture".
 //
-// Returns `given` without a known extension (base/output_name.h). If `given` is empty, or if it
-// names the scene, with the extension .mvs or without extension, and the mesh is a PLY file
+// Returns `given` without a known extension (base/program/output_name.h). If `given` is empty, or
+// if it names the scene, with the extension .mvs or without extension, and the mesh is a PLY file
 // (`is_ply`), the result is "<scene without extension><ending>". In the latter case a line of
 // `context` says so.
 std::filesystem::path mesh_beside(const std::filesystem::path& scene,

@@ -2,7 +2,7 @@
 #include "io/openmvs/scene_options.h"
 
 #include "base/error.h"
-#include "base/unused_input.h"
+#include "base/program/unused_input.h"
 
 namespace axial::io {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "base/program.h"
+#include "base/program/program.h"
 #include "io/openmvs/scene_with_cameras.h"
 
 namespace axial::io {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/unused_input.h"
+#include "base/program/unused_input.h"
 #include "io/cameras/geo_offset.h"
 #include "io/colmap/other_ports.h"
 #include "io/openmvs/mvs.h"

@@ -12,7 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "private/only_for_io.h"
+#include "bytes/private/only_for_io.h"
 
 namespace axial::io {
 

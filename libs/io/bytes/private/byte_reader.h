@@ -14,7 +14,7 @@
 #include <type_traits>
 
 #include "base/error.h"
-#include "private/only_for_io.h"
+#include "bytes/private/only_for_io.h"
 
 namespace axial::io {
 

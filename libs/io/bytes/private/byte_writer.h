@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "private/only_for_io.h"
+#include "bytes/private/only_for_io.h"
 
 namespace axial::io {
 

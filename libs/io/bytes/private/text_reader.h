@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/parse_number.h"
 #include "base/split.h"
-#include "private/only_for_io.h"
+#include "bytes/private/only_for_io.h"
 
 namespace axial::io {
 

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "private/only_for_io.h"
+#include "bytes/private/only_for_io.h"
 
 namespace axial::io {
 

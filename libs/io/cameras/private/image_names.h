@@ -12,8 +12,8 @@
 
 #include "axial/base.h"
 #include "base/error.h"
+#include "bytes/private/only_for_io.h"
 #include "cameras/private/port_json.h"
-#include "private/only_for_io.h"
 #include "scene/scene.h"
 
 namespace axial::io {

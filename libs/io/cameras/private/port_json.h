@@ -6,10 +6,10 @@
 #include <string>
 
 #include "axial/base.h"
+#include "bytes/private/only_for_io.h"
 #include "io/bytes/json.h"
 #include "io/bytes/json_place.h"
 #include "io/cameras/port_sigmas.h"
-#include "private/only_for_io.h"
 #include "refractive/lens_distortion.h"
 #include "refractive/port.h"
 #include "scene/water_surface.h"

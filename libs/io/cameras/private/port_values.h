@@ -7,8 +7,8 @@
 #include <string>
 
 #include "axial/base.h"
+#include "bytes/private/only_for_io.h"
 #include "io/cameras/housing.h"
-#include "private/only_for_io.h"
 #include "scene/scene.h"
 
 namespace axial::io {

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "bytes/private/only_for_io.h"
 #include "io/cameras/position_file.h"
 #include "io/cameras/table_text.h"
-#include "private/only_for_io.h"
 
 namespace axial::io {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "axial/base.h"
+#include "bytes/private/only_for_io.h"
 #include "io/colmap/colmap.h"
-#include "private/only_for_io.h"
 #include "refractive/port.h"
 
 namespace axial::io {

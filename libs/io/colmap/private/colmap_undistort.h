@@ -7,8 +7,8 @@
 #include <string>
 
 #include "base/progress.h"
+#include "bytes/private/only_for_io.h"
 #include "io/colmap/colmap.h"
-#include "private/only_for_io.h"
 #include "refractive/pinhole_camera.h"
 
 namespace axial::io {

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "bytes/private/only_for_io.h"
 #include "io/colmap/rigs.h"
-#include "private/only_for_io.h"
 
 namespace axial::io {
 

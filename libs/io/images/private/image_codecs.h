@@ -9,8 +9,8 @@
 #include <opencv2/core.hpp>
 #include <string_view>
 
+#include "bytes/private/only_for_io.h"
 #include "io/images/image.h"
-#include "private/only_for_io.h"
 
 namespace axial::io {
 

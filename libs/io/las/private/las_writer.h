@@ -11,8 +11,8 @@
 #include "axial/scene.h"
 #include "bytes/private/atomic_stream.h"
 #include "bytes/private/byte_writer.h"
+#include "bytes/private/only_for_io.h"
 #include "las/private/las_header.h"
-#include "private/only_for_io.h"
 
 namespace axial::io {
 

@@ -12,7 +12,7 @@
 
 #include "bytes/private/byte_reader.h"
 #include "bytes/private/byte_writer.h"
-#include "private/only_for_io.h"
+#include "bytes/private/only_for_io.h"
 #include "scene/camera_model.h"
 #include "scene/depth_map.h"
 

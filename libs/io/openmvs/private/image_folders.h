@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "axial/base.h"
-#include "private/only_for_io.h"
+#include "bytes/private/only_for_io.h"
 
 namespace axial::io {
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "private/only_for_io.h"
+#include "bytes/private/only_for_io.h"
 #include "scene/scene.h"
 
 namespace axial::io {

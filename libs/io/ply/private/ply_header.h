@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bytes/private/byte_reader.h"
-#include "private/only_for_io.h"
+#include "bytes/private/only_for_io.h"
 
 namespace axial::io {
 

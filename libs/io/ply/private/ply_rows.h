@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "bytes/private/only_for_io.h"
 #include "ply/private/ply_header.h"
-#include "private/only_for_io.h"
 #include "scene/local_frame.h"
 #include "scene/point_cloud.h"
 

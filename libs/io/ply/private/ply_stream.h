@@ -8,8 +8,8 @@
 #include <functional>
 #include <string>
 
+#include "bytes/private/only_for_io.h"
 #include "ply/private/ply_header.h"
-#include "private/only_for_io.h"
 
 namespace axial::io {
 

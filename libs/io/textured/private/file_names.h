@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "private/only_for_io.h"
+#include "bytes/private/only_for_io.h"
 
 namespace axial::io {
 

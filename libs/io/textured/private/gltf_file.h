@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "private/only_for_io.h"
+#include "bytes/private/only_for_io.h"
 
 namespace axial::io {
 

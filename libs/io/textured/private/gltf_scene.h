@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "private/only_for_io.h"
+#include "bytes/private/only_for_io.h"
 #include "textured/private/gltf_file.h"
 #include "textured/private/texture_set.h"
 

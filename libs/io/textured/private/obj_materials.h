@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "bytes/private/only_for_io.h"
 #include "bytes/private/text_reader.h"
-#include "private/only_for_io.h"
 #include "textured/private/texture_set.h"
 
 namespace axial::io {

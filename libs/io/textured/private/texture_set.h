@@ -13,7 +13,7 @@
 
 #include "axial/scene_images.h"
 #include "base/error.h"
-#include "private/only_for_io.h"
+#include "bytes/private/only_for_io.h"
 #include "scene/point_cloud.h"
 
 namespace axial::io {

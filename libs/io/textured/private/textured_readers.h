@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "axial/base.h"
+#include "bytes/private/only_for_io.h"
 #include "io/images/image.h"
 #include "io/textured/textured_mesh.h"
-#include "private/only_for_io.h"
 #include "scene/local_frame.h"
 #include "scene/mesh.h"
 

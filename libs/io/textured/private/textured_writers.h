@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "bytes/private/only_for_io.h"
 #include "io/textured/textured_mesh.h"
-#include "private/only_for_io.h"
 
 namespace axial::io {
 
