@@ -81,8 +81,9 @@ void select_views(Project& project, const ViewOptions& options, const SceneObser
 Project load_scene(const survey::Options& survey, const std::filesystem::path& point_cloud,
                    const std::filesystem::path& output, bool for_export, const Context& context) {
   require_memory_to_read(survey, point_cloud, for_export, context.memory());  // more than the scene
+  const Context unlimited(context, MemoryBudget());
   Project project;
-  static_cast<survey::Survey&>(project) = survey::open_scene(survey, context);
+  static_cast<survey::Survey&>(project) = survey::open_scene(survey, unlimited);
   project.lenses = io::lenses_of(project.scene, output);
   if (!point_cloud.empty()) io::use_point_cloud(project.scene, project.frame, point_cloud, context);
   return project;
