@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/program/program.h"
-#include "simulate/presets.h"
+#include "simulate/presets/presets.h"
 #include "simulate/second_camera.h"
 
 namespace axial::apps {

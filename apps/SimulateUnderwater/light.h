@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "arguments.h"
-#include "simulate/presets.h"
+#include "simulate/presets/presets.h"
 #include "simulate/underwater.h"
 
 namespace axial::apps {

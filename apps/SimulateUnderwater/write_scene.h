@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <span>
 
-#include "simulate/presets.h"
+#include "simulate/presets/presets.h"
+#include "simulate/presets/survey_change.h"
 #include "simulate/render.h"
 #include "simulate/sparse_points.h"
-#include "simulate/survey_change.h"
 #include "simulate/triangle_mesh.h"
 
 namespace axial::apps {

@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "cloud/fuse.h"
+#include "axial/cloud.h"
+#include "scene/depth_map.h"
 
 namespace axial::cloud {
 

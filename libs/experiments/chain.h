@@ -13,16 +13,10 @@
 #include <vector>
 
 #include "experiments/experiment.h"
+#include "experiments/steps.h"
 #include "refractive/flat_port.h"
 
 namespace axial::experiments {
-
-using Words = std::vector<std::string>;  // words of a command line
-
-struct Chain {
-  std::filesystem::path work;  // the folder that contains the folders of the steps
-  unsigned max_threads = 0;    // number of threads of each program; 0: all cores
-};
 
 // Returns an object with the fingerprint of each program of the chain. If a part (experiment.h)
 // uses the chain, Part::inputs must contain these fingerprints. Error if a program does not lie

@@ -2,12 +2,24 @@
 // Building blocks of the chain's steps (chain.h).
 #pragma once
 
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
 #include "base/atomic_file.h"
-#include "experiments/chain.h"
+#include "experiments/experiment.h"
 #include "io/artifacts/artifact.h"
 #include "io/bytes/json.h"
 
 namespace axial::experiments {
+
+using Words = std::vector<std::string>;  // words of a command line
+
+struct Chain {
+  std::filesystem::path work;  // the folder that contains the folders of the steps
+  unsigned max_threads = 0;    // number of threads of each program; 0: all cores
+};
 
 // Appends `more` to `words`. Returns `words`.
 Words& operator+=(Words& words, const Words& more);

@@ -2,7 +2,7 @@
 // Two cameras on one bar.
 #pragma once
 
-#include "simulate/presets.h"
+#include "simulate/presets/presets.h"
 
 namespace axial::simulate {
 

@@ -22,7 +22,7 @@
 #include "check_program.h"
 #include "compare/changes.h"
 #include "map/geotiff.h"
-#include "simulate/presets.h"
+#include "simulate/presets/presets.h"
 #include "simulate/ray_scene.h"
 
 namespace {

@@ -38,7 +38,7 @@
 #include "map/geotiff.h"
 #include "map_edges.h"
 #include "map_truth.h"
-#include "simulate/presets.h"
+#include "simulate/presets/presets.h"
 
 namespace {
 

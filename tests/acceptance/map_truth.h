@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "map/frame.h"
-#include "simulate/presets.h"
+#include "simulate/presets/presets.h"
 #include "simulate/triangle_mesh.h"
 
 namespace axial::map_check {

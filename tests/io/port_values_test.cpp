@@ -10,6 +10,7 @@
 #include <functional>
 #include <numbers>
 
+#include "colmap/private/colmap_parts.h"
 #include "support/captured_events.h"
 #include "support/empty_folder.h"
 

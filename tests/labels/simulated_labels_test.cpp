@@ -8,7 +8,7 @@
 
 #include "labels/fill.h"
 #include "labels/map_to_photographs.h"
-#include "simulate/presets.h"
+#include "simulate/presets/presets.h"
 #include "simulate/ray_scene.h"
 
 namespace axial::labels {

@@ -10,7 +10,7 @@
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
 #include "io/images/image.h"
-#include "simulate/presets.h"
+#include "simulate/presets/presets.h"
 #include "simulate/solid_texture.h"
 #include "support/empty_folder.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "simulate/presets.h"
+#include "simulate/presets/presets.h"
 #include "support/error_of.h"
 
 namespace axial::simulate {

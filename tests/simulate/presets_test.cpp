@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks the thickness, overlap and contrast of presets with rays and pixels.
-#include "simulate/presets.h"
+#include "simulate/presets/presets.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "simulate/presets.h"
+#include "simulate/presets/presets.h"
 #include "simulate/solid_texture.h"
 
 namespace axial::simulate {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Compares the stated change of a second survey with vertical rays at the meshes of both surveys.
-#include "simulate/survey_change.h"
+#include "simulate/presets/survey_change.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "simulate/presets.h"
+#include "simulate/presets/presets.h"
 #include "simulate/render.h"
 
 namespace axial::simulate {

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "simulate/noise.h"
-#include "simulate/presets.h"
+#include "simulate/presets/presets.h"
 #include "simulate/render.h"
 
 namespace axial::simulate {

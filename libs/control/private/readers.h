@@ -6,7 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "control/read_control.h"
+#include "control/control.h"
+#include "control/control_reading.h"
 
 namespace axial::control {
 

@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "control/read_control.h"
+#include "control/control.h"
+#include "control/control_reading.h"
 
 namespace axial::control {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "simulate/optics.h"
-#include "simulate/presets.h"
+#include "simulate/presets/preset.h"
 
 namespace axial::simulate {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "simulate/preset_parts.h"
+#include "simulate/presets/preset_parts.h"
 
 namespace axial::simulate {
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "simulate/presets.h"
+#include "simulate/presets/preset.h"
 
 namespace axial::simulate {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "simulate/presets.h"
+#include "simulate/presets/presets.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "simulate/preset_parts.h"
-#include "simulate/survey_change.h"
+#include "simulate/presets/preset_parts.h"
+#include "simulate/presets/survey_change.h"
 
 namespace axial::simulate {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "simulate/preset_parts.h"
+#include "simulate/presets/preset_parts.h"
 
 namespace axial::simulate {
 namespace {

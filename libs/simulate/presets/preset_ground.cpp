@@ -2,7 +2,7 @@
 // The presets "sand" and "transect": simple ground seen from above.
 #include <cmath>
 
-#include "simulate/preset_parts.h"
+#include "simulate/presets/preset_parts.h"
 
 namespace axial::simulate {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/votes.h"
+#include "mesh/cast_votes.h"
 
 #include <atomic>
 #include <cmath>

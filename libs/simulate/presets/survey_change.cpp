@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "simulate/survey_change.h"
+#include "simulate/presets/survey_change.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "simulate/preset_parts.h"
+#include "simulate/presets/preset_parts.h"
 
 namespace axial::simulate {
 namespace {

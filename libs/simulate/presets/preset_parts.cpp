@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "simulate/preset_parts.h"
+#include "simulate/presets/preset_parts.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
