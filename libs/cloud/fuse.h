@@ -116,11 +116,4 @@ struct FusionSize {
 // cloud and the memory that the providers need while they load are not included.
 std::uint64_t bytes_needed(const FusionSize& size);
 
-// Returns the normals of a map, estimated from the back-projected points in the 3x3 neighbourhood
-// of each pixel. A neighbour counts if its depth differs from that of the pixel by less than 3 %.
-// At least 3 neighbours must count. The normals have unit length, are in the camera frame and face
-// the camera. The normal is 0 where there is no depth or where the estimation fails. `map.normal`
-// is not used.
-cv::Mat3f estimate_map_normals(const DepthMap& map);
-
 }  // namespace axial::cloud

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "cloud/map_normals.h"
 #include "scene/camera_model.h"
 
 namespace axial::cloud {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cloud/map_normals.h"
+
 #include <Eigen/Geometry>
 #include <cmath>
 
 #include "base/parallel.h"
-#include "cloud/fuse.h"
 #include "scene/camera_model.h"
 
 namespace axial::cloud {
