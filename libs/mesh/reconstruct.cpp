@@ -6,6 +6,8 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "cloud/crop.h"
+#include "mesh/cast_votes.h"
+#include "mesh/cast_votes.h"
 #include "mesh/cut.h"
 #include "mesh/surface.h"
 #include "mesh/tetrahedra.h"

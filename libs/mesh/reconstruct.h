@@ -7,7 +7,6 @@
 
 #include "axial/mesh.h"
 #include "mesh/merge_points.h"
-#include "mesh/votes.h"
 
 namespace axial::mesh {
 
