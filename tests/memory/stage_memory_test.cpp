@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/memory.h"
+#include "cloud/fuse.h"
 #include "cloud/fusion_map.h"
 #include "densify/pinhole_model.h"
 #include "depth/filters.h"
