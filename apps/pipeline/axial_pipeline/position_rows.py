@@ -262,7 +262,7 @@ def entries_of(file, known):
 
 def can_be_degrees(positions):
     """Whether positions of an unknown unit can be degrees: orders_without_unit() in
-    libs/io/private/cameras/position_parts.h."""
+    libs/io/cameras/private/position_parts.h."""
     if len(positions) < 3:
         return False
     xs, ys = ([place[axis] for place in positions] for axis in (0, 1))
