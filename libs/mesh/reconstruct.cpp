@@ -7,7 +7,6 @@
 #include "base/memory.h"
 #include "cloud/crop.h"
 #include "mesh/cast_votes.h"
-#include "mesh/cast_votes.h"
 #include "mesh/cut.h"
 #include "mesh/surface.h"
 #include "mesh/tetrahedra.h"
