@@ -215,7 +215,7 @@ class Errors(LabelsTest):
                 ("from-map", "none.gpkg", "none.gpkg: "),
                 ("from-photographs", "size.json", "it is 50 x 72 px, but the photograph is 96 x 72"),
                 ("from-photographs", "other.json", "no photograph of the scene is named no.png"),
-                ("from-photographs", "odd.json", "odd.json: annotations[0].segmentation: must have lists"),
+                ("from-photographs", "odd.json", "odd.json: annotations[0].segmentation[0] is [10,60,10,60,50], expected x, y, ... of three"),
                 ("from-photographs", "box.json", "has neither polygon nor key point"),
                 ("from-photographs", "text.json", "is no COCO file")):
             self.refuses(expected, *self.project(direction, labels))
