@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "io/cameras/photograph_times.h"
+#include "io/cameras/photograph_numbers.h"
 #include "io/colmap/rigs.h"
 #include "pose/adjust/uncertainty.h"
 #include "pose/bundle/rig_fit.h"
@@ -212,7 +212,7 @@ std::vector<pose::Rig> read_rigs(const RigInput& rigs, const io::ColmapModel& mo
                                          : Known::stated;
   options.frames = rigs.frames;
   options.interval = rigs.interval;
-  if (!rigs.times.empty()) options.times = io::read_photograph_times(rigs.times);
+  if (!rigs.times.empty()) options.times = io::read_photograph_numbers(rigs.times, "seconds");
   return make_rigs(io::read_rigs(rigs.file), model.images, options, rigs.file.string());
 }
 

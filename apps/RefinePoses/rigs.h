@@ -33,7 +33,7 @@ void check_rigs(const RigInput& rigs);
 std::vector<std::filesystem::path> files_of(const RigInput& rigs);
 
 // Reads the rigs for the images of `model`; none if no file is given. Error as for io::read_rigs(),
-// io::read_photograph_times() and pose::make_rigs().
+// io::read_photograph_numbers() and pose::make_rigs().
 std::vector<pose::Rig> read_rigs(const RigInput& rigs, const io::ColmapModel& model);
 
 // Multiplies stated poses and their standard deviations by the length on a map of one metre.

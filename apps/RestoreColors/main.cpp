@@ -2,7 +2,7 @@
 // Gives photographs the colours that they have without water.
 
 #include <algorithm>
-#include <functional>
+#include <span>
 
 #include "base/atomic_file.h"
 #include "base/context.h"
@@ -10,6 +10,7 @@
 #include "base/naming.h"
 #include "base/output_lock.h"
 #include "belong/surface_check.h"
+#include "find.h"
 #include "geometry/seen_part.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
@@ -32,9 +33,6 @@ Mesh read_mesh(const Settings& settings, const LocalFrame& frame, const Context&
   return mesh;
 }
 
-// The memory to fit both models, for each observation.
-constexpr std::uint64_t kBytesToFit = 1000;
-
 // Warns of a mesh that is inside out, and of a scene without a port.
 void check_scene(const Settings& settings, const survey::Survey& survey, const Mesh& mesh,
                  const Context& context) {
@@ -45,116 +43,6 @@ void check_scene(const Settings& settings, const survey::Survey& survey, const M
                            [](const survey::View& view) { return view.camera.port.has_value(); }))
     context.warning("{}: no camera is behind a port; lengths are taken for metres",
                     survey.file().string());
-}
-
-color::Choice fit(const Settings& settings, const color::Observations& observations) {
-  if (!settings.light) return color::choose_light(observations, settings.transfer);
-  color::Choice choice;
-  choice.light = *settings.light;
-  if (choice.light == color::Light::sun)
-    choice.model = color::fit_sun(observations, settings.transfer);
-  else
-    choice.model = color::fit_lamps(observations, settings.transfer);
-  return choice;
-}
-
-// The upward direction in the frame of the scene, unit; zero: not known.
-Eigen::Vector3d up_of(const Settings& settings, const survey::Survey& survey) {
-  if (settings.up) return settings.up->normalized();
-  if (survey.frame.is_world()) return Eigen::Vector3d::Zero();
-  return Eigen::Vector3d::UnitZ();
-}
-
-// Takes the type of water for channels that are not determined, and removes the loss of daylight by
-// depth.
-void use_daylight(const Settings& settings, const color::Observations& observations,
-                  bool has_heights, Findings& findings, const Context& context) {
-  auto* const water = std::get_if<color::SunWater>(&findings.choice.model);
-  if (!water) {
-    if (settings.assumed) context.warning("--assume: is only for daylight; it is not used");
-    if (settings.up) context.info("--up: is only for daylight; it is not used");
-    return;
-  }
-  findings.daylight = color::daylight_of(*water, settings.assumed);
-  if (!findings.daylight) return;
-  if (settings.assumed) color::assume(*findings.daylight, *water);
-  if (has_heights)
-    color::remove_daylight_loss(*findings.daylight, observations, *water);
-  else
-    context.info(
-        "heights are not known: daylight's loss by depth is not removed. --up gives the direction "
-        "of the heights");
-}
-
-// Fits the model, and with Settings::each_exposure the exposures, by which it divides the
-// observations.
-color::Exposures fit_exposures(const Settings& settings, std::size_t views,
-                               color::Observations& observations, color::Choice& choice) {
-  constexpr int kMost = 8;
-  constexpr double kEnough = 0.002;
-  color::Exposures exposures(views, Eigen::Array3f::Ones());
-  Settings fixed = settings;
-  color::Exposures step = color::even_exposures(observations, views);
-  for (int i = 0; i < kMost; ++i) {
-    observations = color::divided_by(step, std::move(observations));
-    for (std::size_t view = 0; view < views; ++view) exposures[view] *= step[view];
-    choice = fit(fixed, observations);
-    fixed.light = choice.light;
-    step = color::exposures_by(choice.model, observations, views);
-    if (color::difference_of(step) < kEnough) break;
-  }
-  return exposures;
-}
-
-color::Observations observe(const Settings& settings, const survey::Survey& survey,
-                            const color::SeenSurface& surface, const Context& context) {
-  context.memory().require(
-      color::SeenSurface::bytes_to_observe(settings.observe) + bytes_to_restore(settings, survey),
-      "looking at photographs");
-  const color::Observations observations = surface.observe(
-      survey::posed_cameras(survey),
-      [&](std::size_t view) {
-        PhotographLight photograph = read_light(survey, view, settings.transfer);
-        color::mark_unusable(photograph.light, photograph.mask, settings.transfer);
-        return photograph.light;
-      },
-      settings.observe, context);
-  if (observations.points() < 100)
-    fail_in(settings.mesh,
-            "only {} even pieces of the mesh are in two photographs or more: must be 100",
-            observations.points());
-  context.memory().require(observations.all.size() * kBytesToFit, "comparing colours");
-  return observations;
-}
-
-Findings find(const Settings& settings, const survey::Survey& survey,
-              const color::SeenSurface& surface, const Context& context) {
-  color::Observations observations = observe(settings, survey, surface, context);
-  Findings findings;
-  const std::size_t views = survey.views.size();
-  findings.raw_spread = color::spread_of(observations, nullptr);
-  if (settings.each_exposure)
-    findings.exposures = fit_exposures(settings, views, observations, findings.choice);
-  else
-    findings.choice = fit(settings, observations);
-  findings.exposures_left =
-      color::difference_of(color::exposures_by(findings.choice.model, observations, views));
-  use_daylight(settings, observations, !up_of(settings, survey).isZero(), findings, context);
-  findings.curve = settings.curve;
-  findings.curve_given = settings.curve_given;
-  findings.light_given = settings.light.has_value();
-  findings.points = observations.points();
-  findings.observations = observations.all.size();
-  findings.spread = color::spread_of(observations, &findings.choice.model);
-  if (std::ranges::none_of(color::determined(findings.choice.model), std::identity()))
-    fail_in(
-        settings.mesh,
-        "the photographs determine the loss of no channel: they show the same points from equal "
-        "distances, or too few points of the mesh, or hardly any light of the seabed");
-  findings.gain = color::grey_world(observations, findings.choice.model);
-  findings.unevenness = color::unevenness_by_place(observations, findings.choice.model);
-  findings.brightness = color::brightness_by_way(observations, findings.choice.model);
-  return findings;
 }
 
 // Restores the photographs that an earlier run has not restored. Returns the share of pixels whose
@@ -171,8 +59,7 @@ double restore_photographs(const Settings& settings, const survey::Survey& surve
       known += static_cast<double>(*pixels);
       ++earlier;
     } else {
-      const color::Restored restored =
-          restored_photograph(settings, survey, surface, findings, view);
+      const color::Restored restored = restored_photograph(survey, surface, findings, view);
       unfinished.write(view, restored, settings.jpeg_quality);
       known += cv::countNonZero(restored.known);
     }
@@ -195,6 +82,7 @@ int run(int argc, char** argv) {
                         context);
   survey::find_photographs(survey, context);
   survey.add_inputs(io::files_of_mesh(settings.mesh));
+  if (!settings.exposures.empty()) survey.add_inputs(std::span(&settings.exposures, 1));
   const OutputNames names = output_names(settings, survey);
   check_outputs(settings, survey, names);
   const WhiteViews white = white_views(settings, survey);

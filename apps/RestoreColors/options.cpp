@@ -20,7 +20,7 @@ namespace {
 
 // The values of the command line before they are checked and converted.
 struct Raw {
-  std::string input, light = "auto", grey, up, assumed, exposure = "one";
+  std::string input, light = "auto", curve = "auto", grey, up, assumed, exposure = "one";
   io::SceneOptions scene;
 };
 
@@ -53,13 +53,17 @@ void declare(OptionList& list, Raw& raw, Settings& settings) {
                         "light of the photographs: sun, lamp (lamps that move with the camera), or "
                         "auto: by the photographs")
       .one_of({"auto", "sun", "lamp"})
-      .add_with_default("curve", &settings.curve,
-                        "how the photographs' values stand for light: srgb, linear or gamma:G")
+      .add_with_default("curve", &raw.curve,
+                        "how the photographs' values stand for light: srgb, linear, gamma:G, or "
+                        "auto: by --exposures if they tell it, otherwise srgb")
       .add_with_default(
           "exposure", &raw.exposure,
           "one: all photographs have the same exposure and white balance; each: every "
           "photograph has its own, which is estimated")
       .one_of({"one", "each"})
+      .add("exposures", &settings.exposures,
+           "file with a line NAME,EXPOSURE for each photograph: the exposure time by the "
+           "sensitivity over the square of the f-number, in any unit")
       .add("grey", &raw.grey,
            "a part of a photograph that is grey in white light: IMAGE:X,Y,WIDTH,HEIGHT [px] "
            "(default: the seabed is grey in the mean)")
@@ -86,6 +90,15 @@ void declare(OptionList& list, Raw& raw, Settings& settings) {
   io::declare_scene_options(list, raw.scene);
 }
 
+void take_exposure(const Raw& raw, Options& options) {
+  Settings& settings = options.settings;
+  if (raw.exposure == "each") settings.exposure = ExposureKind::each;
+  if (settings.exposures.empty()) return;
+  if (given(options.parsed, "exposure"))
+    fail("--exposure and --exposures both say what the exposures are; give one of them");
+  settings.exposure = ExposureKind::given;
+}
+
 void convert(const Raw& raw, Options& options) {
   Settings& settings = options.settings;
   settings.survey.files = io::scene_files(raw.scene, raw.input, options.parsed);
@@ -93,9 +106,8 @@ void convert(const Raw& raw, Options& options) {
   if (settings.output.empty()) fail("no output folder given (-o DIR)");
   if (raw.light == "sun") settings.light = color::Light::sun;
   if (raw.light == "lamp") settings.light = color::Light::lamp;
-  settings.transfer = color::Transfer::parse(settings.curve);
-  settings.curve_given = given(options.parsed, "curve");
-  settings.each_exposure = raw.exposure == "each";
+  if (raw.curve != "auto") settings.curve = color::Transfer::parse(raw.curve);
+  take_exposure(raw, options);
   settings.up = map::parse_up(raw.up, 0);
   if (!raw.assumed.empty()) settings.assumed = color::parse_water_type(raw.assumed);
   if (!raw.grey.empty()) settings.grey = grey_of(raw.grey);

@@ -13,6 +13,10 @@
 
 namespace axial::apps {
 
+// Whether the photographs have one exposure and white balance, exposures that a file gives and one
+// white balance, or each its own, which are estimated.
+enum class ExposureKind { one, given, each };
+
 // A part of a photograph that is grey in white light.
 struct GreyPatch {
   std::string image;  // the end of the photograph's path
@@ -22,11 +26,10 @@ struct GreyPatch {
 struct Settings {
   survey::Options survey;
   std::filesystem::path mesh, output;
-  std::optional<color::Light> light;  // empty: by the photographs
-  std::string curve = "srgb";         // the text of `transfer`
-  bool curve_given = false;
-  color::Transfer transfer;
-  bool each_exposure = false;  // each photograph has an exposure and white balance of its own
+  std::optional<color::Light> light;     // empty: by the photographs
+  std::optional<color::Transfer> curve;  // empty: by the exposures, or that of sRGB
+  ExposureKind exposure = ExposureKind::one;
+  std::filesystem::path exposures;  // file of ExposureKind::given
   std::optional<GreyPatch> grey;
   // "all", or the end of the path of a photograph that shows a chart; empty: none is looked for.
   std::string chart;

@@ -18,10 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-color::Rendering rendering_of(const Settings& settings, const survey::Survey& survey,
-                              std::size_t view, const Findings& findings) {
+color::Rendering rendering_of(const survey::Survey& survey, std::size_t view,
+                              const Findings& findings) {
   const survey::View& of = survey.views[view];
-  return {findings.gain, settings.transfer, is_jpeg_name(of.file) ? 8 : of.header.bits,
+  return {findings.gain, findings.transfer, is_jpeg_name(of.file) ? 8 : of.header.bits,
           exposure_of(findings, view)};
 }
 
@@ -32,7 +32,6 @@ geometry::PosedCamera posed(const survey::View& view) {
 }
 
 Eigen::Array3f exposure_of(const Findings& findings, std::size_t view) {
-  if (findings.exposures.empty()) return Eigen::Array3f::Ones();
   return findings.exposures[view];
 }
 
@@ -67,13 +66,12 @@ void check_outputs(const Settings& settings, const survey::Survey& survey,
     require_not_an_input(output.path, survey.inputs, option);
 }
 
-color::Restored restored_photograph(const Settings& settings, const survey::Survey& survey,
-                                    const color::SeenSurface& surface, const Findings& findings,
-                                    std::size_t view) {
-  const PhotographLight photograph = read_light(survey, view, settings.transfer);
+color::Restored restored_photograph(const survey::Survey& survey, const color::SeenSurface& surface,
+                                    const Findings& findings, std::size_t view) {
+  const PhotographLight photograph = read_light(survey, view, findings.transfer);
   return color::restore(photograph.light, photograph.mask,
                         surface.sights(posed(survey.views[view])), findings.choice.model,
-                        rendering_of(settings, survey, view, findings));
+                        rendering_of(survey, view, findings));
 }
 
 std::uint64_t bytes_to_restore(const Settings& settings, const survey::Survey& survey) {

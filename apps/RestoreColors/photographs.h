@@ -42,9 +42,8 @@ void check_outputs(const Settings& settings, const survey::Survey& survey,
                    const OutputNames& names);
 
 // The photograph of a view without water.
-color::Restored restored_photograph(const Settings& settings, const survey::Survey& survey,
-                                    const color::SeenSurface& surface, const Findings& findings,
-                                    std::size_t view);
+color::Restored restored_photograph(const survey::Survey& survey, const color::SeenSurface& surface,
+                                    const Findings& findings, std::size_t view);
 
 // The memory [bytes] of restored_photograph() besides the surface, for the largest photograph. With
 // Settings::chart, that of find_white() (white.h), which is larger.

@@ -70,6 +70,28 @@ const char* name_of(White white) {
   return "";
 }
 
+const char* name_of(ExposureKind exposure) {
+  switch (exposure) {
+    case ExposureKind::one:
+      return "one";
+    case ExposureKind::given:
+      return "given";
+    case ExposureKind::each:
+      return "each";
+  }
+  return "";
+}
+
+// Whether the exposures tell the curve of the camera.
+bool is_told(const Findings& findings) {
+  return findings.found_curve && findings.found_curve->is_told;
+}
+
+const char* curve_from(const Findings& findings) {
+  if (findings.curve_given) return "option";
+  return is_told(findings) ? "exposures" : "assumption";
+}
+
 const char* name_of(color::Light light) {
   return light == color::Light::sun ? "sun" : "lamp";
 }
@@ -106,11 +128,12 @@ bool falls_with_way(const color::LampField& field) {
 // Warns if the same points have different colours in the restored photographs.
 void check_agreement(const Findings& findings, const Context& context) {
   constexpr double kMostUneven = 0.04, kMostSpread = 0.4, kMostExposure = 0.05;
-  if (findings.exposures.empty() && findings.exposures_left > kMostExposure)
+  if (findings.exposure != ExposureKind::each && findings.exposures_left > kMostExposure)
     context.warning(
-        "the photographs differ in exposure by {:.0f} %, but are restored with one exposure: try "
+        "the photographs differ in exposure by {:.0f} %, but are restored with {}: try "
         "--exposure each",
-        100 * findings.exposures_left);
+        100 * findings.exposures_left,
+        findings.exposure == ExposureKind::one ? "one exposure" : "the exposures of --exposures");
   if (findings.unevenness > kMostUneven)
     context.warning(
         "the restored light depends on the place in the image by {:.0f} %: {}",
@@ -147,12 +170,27 @@ void log_charts(const Findings& findings, const Context& context) {
   }
 }
 
+void log_curve(const Findings& findings, const Context& context) {
+  if (findings.curve_given) return;
+  if (is_told(findings))
+    log_info(
+        "The curve of the camera is {}, by the exposures: with it, the light of a point differs "
+        "between photographs by {:.1f} %; with that of sRGB, by {:.1f} %",
+        findings.transfer.name(), 100 * findings.found_curve->spread,
+        100 * findings.found_curve->spread_first);
+  else
+    context.info(
+        "The curve of the camera is not known: values are taken for light by the curve of sRGB. "
+        "Photographs that were developed from raw files with gamma 1 need --curve linear{}",
+        findings.found_curve ? ". The exposures do not tell the curve" : "");
+}
+
 }  // namespace
 
 void log_findings(const Findings& findings, const Context& context) {
   log_info("Light: {}{}", name_of(findings.choice.light),
            findings.light_given ? " (given)" : ", by the photographs");
-  if (!findings.exposures.empty())
+  if (findings.exposure != ExposureKind::one)
     log_info("Exposures differ by {:.1f} % between photographs",
              100 * color::difference_of(findings.exposures));
   std::visit([](const auto& water) { log_channels(water); }, findings.choice.model);
@@ -167,10 +205,7 @@ void log_findings(const Findings& findings, const Context& context) {
           "the loss of {} light is not determined by the photographs: {} stays as it is", kNames[k],
           kNames[k]);
   log_charts(findings, context);
-  if (!findings.curve_given)
-    context.info(
-        "The curve of the camera is not known: values are taken for light by the curve of sRGB. "
-        "Photographs that were developed from raw files with gamma 1 need --curve linear");
+  log_curve(findings, context);
   if (findings.white == White::grey_seabed)
     context.info(
         "White is an assumption: the seabed is taken for grey in the mean. --grey names "
@@ -182,20 +217,24 @@ namespace {
 json describe(const Findings& findings) {
   json file = {{"light", name_of(findings.choice.light)},
                {"light_given", findings.light_given},
-               {"curve", findings.curve},
+               {"curve", findings.transfer.name()},
+               {"curve_from", curve_from(findings)},
                {"points", findings.points},
                {"observations", findings.observations},
                {"spread_before", findings.raw_spread},
                {"spread_after", findings.spread},
                {"unevenness_by_place", findings.unevenness},
                {"determined_pixels", findings.known},
-               {"exposure", findings.exposures.empty() ? "one" : "each"},
+               {"exposure", name_of(findings.exposure)},
                {"white", name_of(findings.white)},
                {"gain", list(findings.gain)}};
   if (!findings.light_given)
     file["spread_of_models"] = {{"sun", findings.choice.sun_spread},
                                 {"lamp", findings.choice.lamp_spread}};
   for (const SeenChart& chart : findings.charts) file["charts"].push_back(describe(chart));
+  if (is_told(findings))
+    file["spread_of_curves"] = {{findings.transfer.name(), findings.found_curve->spread},
+                                {"srgb", findings.found_curve->spread_first}};
   if (findings.daylight) file["water_type"] = color::name_of(findings.daylight->type);
   for (const color::BrightnessAt& layer : findings.brightness)
     file["brightness_by_way"].push_back(describe(layer));

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "color/brightness.h"
+#include "color/camera_curve.h"
 #include "color/chart.h"
 #include "color/daylight.h"
 #include "color/exposure.h"
@@ -27,13 +28,15 @@ struct SeenChart {
 struct Findings {
   color::Choice choice;
   bool light_given = false;
-  std::string curve;  // Settings::curve
-  bool curve_given = false;
+  color::Transfer transfer;                       // the curve of the camera
+  bool curve_given = false;                       // by --curve
+  std::optional<color::CameraCurve> found_curve;  // if it was looked for by exposures
   std::size_t points = 0, observations = 0;
   double raw_spread = 0, spread = 0;  // of a point's light between photographs
   double unevenness = 0;              // by the place in the image, after restoring
   double known = 0;                   // share of pixels whose colour is determined
-  // Of the views; empty: one for all. `exposures_left`: by how much they differ from those.
+  ExposureKind exposure = ExposureKind::one;
+  // Of the views; 1 for all if they have one. `exposures_left`: by how much they differ from those.
   color::Exposures exposures;
   double exposures_left = 0;
   Eigen::Array3f gain = Eigen::Array3f::Ones();

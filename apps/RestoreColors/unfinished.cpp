@@ -37,7 +37,7 @@ void add_mesh(Fingerprint& print, const Mesh& mesh) {
 
 void add_options(Fingerprint& print, const Settings& settings) {
   print.add(settings.light ? (*settings.light == color::Light::sun ? "sun" : "lamp") : "auto");
-  print.add(settings.curve).add(std::uint64_t{settings.each_exposure});
+  print.add(std::uint64_t{settings.exposure == ExposureKind::each});
   print.add(std::uint64_t{settings.observe.points});
   print.add(settings.assumed ? color::name_of(*settings.assumed) : "");
   print.add(static_cast<std::uint64_t>(settings.jpeg_quality));
@@ -50,10 +50,11 @@ std::string made_from(const Settings& settings, const survey::Survey& survey, co
                       const Findings& findings, const Context& context) {
   Fingerprint print;
   // The number is the version of the method.
-  print.add("AxialMVS restored photographs 1");
+  print.add("AxialMVS restored photographs 2");
   add_options(print, settings);
   add_mesh(print, mesh);
   add_numbers(print, survey.frame.origin);
+  print.add(findings.transfer.name());
   add_numbers(print, findings.gain);
   for (const Eigen::Array3f& exposure : findings.exposures) add_numbers(print, exposure);
   print.add(survey::fingerprint_of_views(survey, context));

@@ -30,14 +30,14 @@ std::size_t view_named(const std::string& name, const char* option, const survey
 
 // A photograph whose light is restored without white.
 struct SeenLight {
-  SeenLight(const Settings& settings, const survey::Survey& survey,
-            const color::SeenSurface& surface, const Findings& findings, std::size_t view)
-      : photograph(read_light(survey, view, settings.transfer)),
+  SeenLight(const survey::Survey& survey, const color::SeenSurface& surface,
+            const Findings& findings, std::size_t view)
+      : photograph(read_light(survey, view, findings.transfer)),
         sights(surface.sights(posed(survey.views[view]))),
         exposure(exposure_of(findings, view)),
         model(findings.choice.model) {
     usable = photograph.light.clone();
-    color::mark_unusable(usable, photograph.mask, settings.transfer);
+    color::mark_unusable(usable, photograph.mask, findings.transfer);
   }
 
   // The mean light of the surface, of pixels where it is known; NaN if there is none.
@@ -129,7 +129,7 @@ void use_charts(const Settings& settings, const survey::Survey& survey,
   std::string fault;  // of the last chart that cannot be used
   for (const std::size_t view : views) {
     const std::string name = names[view].generic_string();
-    const SeenLight light(settings, survey, surface, findings, view);
+    const SeenLight light(survey, surface, findings, view);
     for (SeenChart& chart : charts_in(name, light, findings)) {
       const std::string why = fault_of(chart, findings);
       if (why.empty()) {
@@ -183,7 +183,7 @@ void find_white(const Settings& settings, const survey::Survey& survey,
                 const color::SeenSurface& surface, const WhiteViews& views, Findings& findings,
                 const Context& context) {
   if (settings.grey)
-    use_grey(*settings.grey, SeenLight(settings, survey, surface, findings, views.grey), findings);
+    use_grey(*settings.grey, SeenLight(survey, surface, findings, views.grey), findings);
   if (!views.charts.empty()) use_charts(settings, survey, surface, views.charts, findings, context);
 }
 

@@ -5,7 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
+#include <span>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/parse_number.h"
 #include "base/progress.h"
@@ -141,6 +143,15 @@ float exposure_within(double stops, std::mt19937& random) {
   return static_cast<float>(std::exp2(stops * (2 * (static_cast<double>(random()) / kRange) - 1)));
 }
 
+// For `RestoreColors --exposures`.
+void write_exposures(const std::filesystem::path& file, const simulate::Preset& preset,
+                     std::span<const float> exposures) {
+  std::string lines = "name,exposure\n";
+  for (std::size_t i = 0; i < exposures.size(); ++i)
+    lines += fmt::format("{}.jpg,{}\n", view_name(preset, i), exposures[i]);
+  write_atomically(file, lines);
+}
+
 }  // namespace
 
 simulate::AnyWater water_of(const Arguments& a, const CommonOptions& common) {
@@ -179,7 +190,10 @@ void photograph_with_light(const Arguments& a, const simulate::Preset& preset,
   std::vector<float> exposures;
   for (std::size_t i = 0; i < preset.views.size(); ++i)
     exposures.push_back(exposure_within(a.exposure_stops, random));
-  if (a.exposure_stops > 0) file["exposures"] = exposures;
+  if (a.exposure_stops > 0) {
+    file["exposures"] = exposures;
+    write_exposures(folder / "exposures.csv", preset, exposures);
+  }
   io::write_json(folder / "light.json", file);
   const ProgressSink progress = console_progress("Images (water)");
   for (std::size_t i = 0; i < preset.views.size(); ++i) {

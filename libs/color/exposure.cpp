@@ -33,6 +33,15 @@ void set_channel(Exposures& exposures, int k, const std::vector<float>& logarith
 
 }  // namespace
 
+Exposures exposures_of(std::span<const double> ratios) {
+  double mean = 0;
+  for (const double ratio : ratios) mean += std::log(ratio) / static_cast<double>(ratios.size());
+  Exposures exposures;
+  for (const double ratio : ratios)
+    exposures.push_back(Eigen::Array3f::Constant(static_cast<float>(ratio / std::exp(mean))));
+  return exposures;
+}
+
 Exposures even_exposures(const Observations& observations, std::size_t views) {
   constexpr int kIterations = 20;
   Exposures exposures(views, Eigen::Array3f::Ones());
@@ -85,6 +94,23 @@ Exposures exposures_by(const WaterModel& model, const Observations& observations
     set_channel(exposures, k, centred_medians(std::move(ratios)));
   }
   return exposures;
+}
+
+Evened fit_exposures(const Observations& observations, std::size_t views, const Transfer& transfer,
+                     std::optional<Light> light) {
+  constexpr int kMost = 8;
+  constexpr double kEnough = 0.002;
+  Evened evened{{}, Exposures(views, Eigen::Array3f::Ones()), observations};
+  Exposures step = even_exposures(observations, views);
+  for (int i = 0; i < kMost; ++i) {
+    evened.even = divided_by(step, std::move(evened.even));
+    for (std::size_t view = 0; view < views; ++view) evened.exposures[view] *= step[view];
+    evened.choice = fit_light(evened.even, transfer, light);
+    light = evened.choice.light;
+    step = exposures_by(evened.choice.model, evened.even, views);
+    if (difference_of(step) < kEnough) break;
+  }
+  return evened;
 }
 
 Observations divided_by(const Exposures& exposures, Observations observations) {

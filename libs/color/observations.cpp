@@ -130,6 +130,19 @@ Eigen::Vector2f place_of(const Eigen::Vector2d& pixel, const CameraModel& camera
   return ((pixel - middle) / (0.5 * std::max(camera.width, camera.height))).cast<float>();
 }
 
+Observations every(std::size_t step, std::size_t first, const Observations& observations) {
+  Observations part;
+  part.first.push_back(0);
+  for (std::size_t point = first; point < observations.points(); point += step) {
+    for (Observation seen : observations.of(point)) {
+      seen.point = static_cast<std::uint32_t>(part.points());
+      part.all.push_back(seen);
+    }
+    part.first.push_back(part.all.size());
+  }
+  return part;
+}
+
 Observations without_shadows(const Observations& observations) {
   Observations open;
   open.first.push_back(0);

@@ -52,6 +52,9 @@ struct Observations {
   }
 };
 
+// Every `step`-th point, from the point `first` on.
+Observations every(std::size_t step, std::size_t first, const Observations& observations);
+
 // Only the observations that are open. Points may have one observation, or none.
 Observations without_shadows(const Observations& observations);
 

@@ -24,20 +24,6 @@ Loss loss_of(const WaterModel& model, const Sight& sight) {
       model);
 }
 
-// Every second point, from the point `first` on.
-Observations half_of(const Observations& all, std::size_t first) {
-  Observations half;
-  half.first.push_back(0);
-  for (std::size_t point = first; point < all.points(); point += 2) {
-    for (Observation seen : all.of(point)) {
-      seen.point = static_cast<std::uint32_t>(half.points());
-      half.all.push_back(seen);
-    }
-    half.first.push_back(half.all.size());
-  }
-  return half;
-}
-
 // The factor below which light stays as it is: less than a thousandth of it is left.
 constexpr float kLeastFactor = 1e-3f;
 
@@ -129,16 +115,25 @@ double spread_of(const Observations& observations, const WaterModel* model) {
 
 Choice choose_light(const Observations& observations, const Transfer& transfer) {
   constexpr double kMuchBetter = 0.8;
-  const Observations fitted = half_of(observations, 0), other = half_of(observations, 1);
+  const Observations fitted = every(2, 0, observations), other = every(2, 1, observations);
   Choice choice;
   const WaterModel sun = fit_sun(fitted, transfer), lamps = fit_lamps(fitted, transfer);
   choice.sun_spread = spread_of(other, &sun);
   choice.lamp_spread = spread_of(other, &lamps);
   choice.light = choice.lamp_spread < kMuchBetter * choice.sun_spread ? Light::lamp : Light::sun;
-  if (choice.light == Light::lamp)
-    choice.model = fit_lamps(observations, transfer);
-  else
+  choice.model = fit_light(observations, transfer, choice.light).model;
+  return choice;
+}
+
+Choice fit_light(const Observations& observations, const Transfer& transfer,
+                 std::optional<Light> light) {
+  if (!light) return choose_light(observations, transfer);
+  Choice choice;
+  choice.light = *light;
+  if (choice.light == Light::sun)
     choice.model = fit_sun(observations, transfer);
+  else
+    choice.model = fit_lamps(observations, transfer);
   return choice;
 }
 

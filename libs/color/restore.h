@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <variant>
 
 #include "color/lamp_field.h"
@@ -42,6 +43,11 @@ struct Choice {
 // chosen if their spread is below 80 % of that of the sun's model, because their model has many
 // more numbers. The chosen model is fitted to all points.
 Choice choose_light(const Observations& observations, const Transfer& transfer);
+
+// The fit of the model for `light`, with Choice::sun_spread and lamp_spread 0; without a light,
+// choose_light().
+Choice fit_light(const Observations& observations, const Transfer& transfer,
+                 std::optional<Light> light);
 
 // How much the light of one point differs between photographs, as a share of how much the light of
 // different points differs (median standard deviation over a robust one), averaged over the

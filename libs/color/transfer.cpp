@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "color/transfer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,16 +16,28 @@ namespace axial::color {
 
 Transfer Transfer::parse(std::string_view text) {
   constexpr std::string_view kGamma = "gamma:";
-  Transfer transfer;
-  if (text == "srgb") return transfer;
-  transfer.gamma_ = 1;
-  if (text == "linear") return transfer;
+  if (text == "srgb") return {};
+  if (text == "linear") return of_gamma(1);
   const auto gamma =
       text.starts_with(kGamma) ? parse_finite<double>(text.substr(kGamma.size())) : std::nullopt;
   if (!gamma || *gamma < 0.2 || *gamma > 5)
     fail("curve is '{}', but must be srgb, linear or gamma:G with G from 0.2 to 5", text);
-  transfer.gamma_ = *gamma;
+  return of_gamma(*gamma);
+}
+
+Transfer Transfer::of_gamma(double gamma) {
+  Transfer transfer;
+  transfer.gamma_ = gamma;
   return transfer;
+}
+
+std::optional<double> Transfer::gamma() const {
+  return gamma_ > 0 ? std::optional(gamma_) : std::nullopt;
+}
+
+std::string Transfer::name() const {
+  if (gamma_ == 0) return "srgb";
+  return gamma_ == 1 ? "linear" : fmt::format("gamma:{:.4g}", gamma_);
 }
 
 float Transfer::light(float value) const {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
+#include <string>
 #include <string_view>
 
 namespace axial::color {
@@ -17,12 +19,21 @@ class Transfer {
   // another text.
   static Transfer parse(std::string_view text);
 
+  // value = light^(1/G). Precondition: G is within the range of parse().
+  static Transfer of_gamma(double gamma);
+
+  // G; empty for the curve of sRGB.
+  std::optional<double> gamma() const;
+
+  // The text of parse(); G has four digits.
+  std::string name() const;
+
   float light(float value) const;  // of a value; values outside 0 to 1 are clamped
   float value(float light) const;  // of light, the inverse of light()
   float slope(float value) const;  // d(light)/d(value), at least 1e-3
 
  private:
-  double gamma_ = 0;  // 0: sRGB
+  double gamma_ = 0;  // 0: sRGB; 1: linear
 };
 
 // The light of a photograph: R G B, 0 to 1. `pixels`: B G R of 8 or 16 bits. `bits`: of a value of

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/cameras/photograph_times.h"
+#include "io/cameras/photograph_numbers.h"
 #include "io/colmap/colmap.h"
 #include "io/colmap/rigs.h"
 #include "pose/bundle/rig.h"
@@ -20,8 +20,8 @@ struct RigOptions {
   // A regular expression (ECMAScript). Photographs in whose names its first group matches the same
   // text belong to one frame. Empty: see make_rigs().
   std::string frames = {};
-  io::PhotographTimes times = {};  // empty: not known
-  double interval = 0;             // between two frames [s]; 0: not known
+  io::PhotographNumbers times = {};  // empty: not known
+  double interval = 0;               // between two frames [s]; 0: not known
 };
 
 // Makes the rigs of a bundle. The images of the bundle are those of `images`, in their order. A

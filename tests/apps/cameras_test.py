@@ -65,6 +65,23 @@ class ExifData(InFolder):
         self.assertEqual(exif.camera_of("GoPro", "HERO9"), "GoPro HERO9")
         self.assertEqual(exif.camera_of("NIKON CORPORATION", "NIKON D5"), "NIKON D5")
 
+    def test_exposures_are_time_by_sensitivity_over_squared_f_number(self):
+        rational = lambda tag, number: (tag, 5, 1, number)
+        for order in "<>":
+            short = lambda value: value << (16 if order == ">" else 0)
+            numbers = struct.pack(f"{order}IIII", 1, 250, 28, 10)  # 1/250 s, f/2.8
+            for sensitivity, tags, expected in (
+                    (200, 3, 200 / 250 / 2.8**2), (200, 2, 200 / 250), (0, 3, None), (200, 0, None)):
+                rows = [rational(0x829A, 100), rational(0x829D, 108)][:tags] if tags != 2 else [rational(0x829A, 100)]
+                rows.append((0x8827, 3, 1, short(sensitivity)))
+                first = struct.pack(f"{order}HHHII", 1, 0x8769, 4, 1, 26)
+                own = struct.pack(f"{order}H", len(rows)) + b"".join(
+                    struct.pack(f"{order}HHII", *row) for row in rows)
+                data = (b"II*\0" if order == "<" else b"MM\0*") + struct.pack(f"{order}I", 8) + first
+                data = (data + b"\0" * (26 - len(data)) + own).ljust(100, b"\0") + numbers
+                found = exif.exif_in(data).exposure
+                self.assertEqual(found, expected) if expected is None else self.assertAlmostEqual(found, expected)
+
     def test_damaged_data_say_nothing(self):
         whole = jpeg(4, 3, 18.5, "Canon EOS")
         for at in range(len(whole)):

@@ -26,7 +26,8 @@ from axial_pipeline.reconstruct_options import options  # noqa: E402
 def options_of(**changes):
     """The options of `reconstruct` with their defaults and these changes, as its checks leave them."""
     given = options(PIPELINE, "", ["--images", "images", "--lens", "lens", "--housing", "housing", "-o", "out"])
-    return argparse.Namespace(**{**vars(given), "lens": "lens", "cameras": [], "doubled": {}, "lines": [], **changes})
+    return argparse.Namespace(**{**vars(given), "lens": "lens", "cameras": [], "doubled": {}, "lines": [],
+                                 "exposures": {}, **changes})
 
 
 def reconstruct_command(*options, source=("--images", "images"), lens="lens", housing="housing", out="out",

@@ -14,7 +14,7 @@ from programs import main, without_streams
 from reconstruct_test import STEPS
 from stand_ins import StandIns
 
-from axial_pipeline import reconstruct_steps
+from axial_pipeline import exif, exposures, photographs, reconstruct_steps
 from axial_pipeline.run_file import write_run
 
 
@@ -186,6 +186,28 @@ class WithStandIns(StandIns):
         self.assertIn("Of an earlier run, not of this one: scene_map_raw.dem.tif, scene_map_raw.ortho.tif", said)
         again = {step: json.loads((self.folder / f"out/steps/{step}.done.json").read_text()) for step in STEPS[:11]}
         self.assertEqual([one["chain"] for one in again.values()], [one["chain"] for one in without.values()])
+
+    def test_exposures_by_exif(self):
+        taken = lambda camera, *exposures: {f"{number}.jpg": photographs.Image(exif=exif.Exif(camera, exposure=exposure))
+                                            for number, exposure in enumerate(exposures)}
+        of = lambda images, **changes: exposures.of(options_of(**{"restore_colors": True, **changes}), images, images)
+        found = of(taken("a", 1 / 64, 0.25, 0.5))
+        self.assertEqual(found, {"0.jpg": 1 / 64, "1.jpg": 0.25, "2.jpg": 0.5})
+        self.assertEqual(exposures.lines_about(found),
+                         ["exposures (Exif): the longest is 32.0 times the shortest"])
+        for images in (taken("a", 1, None), taken("a", 1, 1.04), {**taken("b", 2, 1), **taken("a", 1)}):
+            self.assertEqual(of(images), {})
+        for changes in ({"restore_colors": False}, {"colors": "--exposure each"}, {"colors": "--exposures=my.csv"}):
+            self.assertEqual(of(taken("a", 1, 2), **changes), {})
+        step = lambda found: {step.name: step for step in reconstruct_steps.steps(options_of(
+            restore_colors=True, until="texture", exposures=found), self.folder / "out")}["colors"]
+        file = self.folder / "out" / "exposures.csv"
+        self.assertIn(f"--exposures {file}", " ".join(step(found).command))
+        self.assertNotIn("--exposures", step({}).command)
+        self.assertNotEqual(step(found).fingerprint(), step({**found, "1.jpg": 0.3}).fingerprint())
+        file.parent.mkdir()
+        step(found).before()
+        self.assertEqual(file.read_text(), "name,exposure\n0.jpg,0.015625\n1.jpg,0.25\n2.jpg,0.5\n")
 
     def test_colours_without_water_and_other_options(self):
         self.assertIn("--colors --light sun: is only for --restore-colors", self.refused("--colors=--light sun"))

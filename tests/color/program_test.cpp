@@ -12,6 +12,7 @@
 #include "color/transfer.h"
 #include "drawn_chart.h"
 #include "io/bytes/json.h"
+#include "io/cameras/photograph_numbers.h"
 #include "io/images/image.h"
 #include "support/program_run.h"
 
@@ -251,6 +252,51 @@ TEST_F(RestoreColors, TakesWhiteFromAColourChart) {
   EXPECT_EQ(findings().at("charts").size(), 2U);
 }
 
+// The exposures are within a stop of the right one; the curve of the camera is not that of sRGB.
+TEST_F(RestoreColors, FindsTheCurveOfTheCameraByExposures) {
+  photograph(std::string(kPlainWater) + " --exposure-stops 0.7 --response linear");
+  EXPECT_THAT(restore("--light sun"), HasSubstr("differ in exposure"));
+  const std::string output = restore("--light sun --exposures water/exposures.csv");
+  EXPECT_THAT(output, HasSubstr("The curve of the camera is "));
+  EXPECT_THAT(output, Not(HasSubstr("differ in exposure")));
+  EXPECT_EQ(findings().at("curve_from"), "exposures");
+  EXPECT_EQ(findings().at("exposure"), "given");
+  const std::string curve = findings().at("curve");
+  EXPECT_NEAR(Transfer::parse(curve).gamma().value_or(0), 1, 0.05) << curve;
+  // The found curve gives the same photographs as if it was given.
+  fs::rename(folder_ / "restored", folder_ / "found");
+  restore("--light sun --exposures water/exposures.csv --curve " + curve);
+  EXPECT_EQ(read_file(folder_ / "found/0003.jpg"), read_file(folder_ / "restored/0003.jpg"));
+}
+
+TEST_F(RestoreColors, KeepsTheCurveOfSrgbWhereExposuresAgree) {
+  photograph(std::string(kPlainWater) + " --exposure-stops 0.7");
+  const fs::path file = folder_ / "water/exposures.csv";
+  EXPECT_THAT(restore("--light sun --exposures water/exposures.csv"),
+              HasSubstr("The curve of the camera is srgb, by the exposures"));
+  EXPECT_EQ(findings().at("curve"), "srgb");
+  const nlohmann::json red = findings().at("channels").at("red");
+  EXPECT_NEAR(red.at("a_per_m").at("value"), 0.9, 0.08 * 0.9 + 0.02);
+
+  const auto refuses = [&](const std::string& text, const std::string& expected) {
+    write_atomically(file, text);
+    expect_refusal("RestoreColors",
+                   "-i scene.mvs -m mesh.ply --refractive -v 0 -o other "
+                   "--exposures water/exposures.csv",
+                   expected);
+  };
+  std::string inverted;
+  for (const auto& [name, exposure] : io::read_photograph_numbers(file, "exposure"))
+    inverted += fmt::format("{},{}\n", name, 1 / exposure);
+  write_atomically(folder_ / "inverted.csv", inverted);
+  EXPECT_THAT(restore("--light sun --exposures inverted.csv"),
+              HasSubstr("agrees better without these exposures: they are not used"));
+  EXPECT_EQ(findings().at("exposure"), "one");
+  refuses("0000.jpg,1\n", "has no exposure of the photograph 0001.jpg");
+  refuses("0000.jpg,1\nwater/0000.jpg,2\n", "two lines are for the photograph 0000.jpg");
+  refuses("0000.jpg,0\n", "the exposure of 0000.jpg is 0, but must be above 0");
+}
+
 // With heights, the surface becomes as bright as if it was level; a known type is used.
 TEST_F(RestoreColors, RemovesTheLossOfDaylightByDepth) {
   photograph("--water IB");
@@ -268,6 +314,8 @@ TEST_F(RestoreColors, RefusesWhatIsWrongInOneLine) {
   const std::string scene = "-i scene.mvs -m mesh.ply --refractive -v 0 --process-priority 0 ";
   expect_refusal("RestoreColors", scene, "no output folder given");
   expect_refusal("RestoreColors", scene + "-o restored --curve log", "curve is 'log'");
+  expect_refusal("RestoreColors", scene + "-o restored --exposures x.csv --exposure each",
+                 "give one of them");
   expect_refusal("RestoreColors", scene + "-o restored --grey 0000.jpg:1,2,3",
                  "must be IMAGE:X,Y,WIDTH,HEIGHT");
   expect_refusal("RestoreColors", scene + "-o restored --grey none.jpg:1,2,3,4",

@@ -7,7 +7,7 @@
 
 #include "io/artifacts/written_files.h"
 #include "io/bytes/json.h"
-#include "io/cameras/photograph_times.h"
+#include "io/cameras/photograph_numbers.h"
 #include "io/cameras/position_file.h"
 #include "io/cameras/transform_file.h"
 #include "reader.h"
@@ -74,7 +74,7 @@ bool write_transform_seed(const fs::path& file, int variant) {
 }
 
 void read_times_file(const fs::path& file) {
-  for (const auto& [name, seconds] : io::read_photograph_times(file))
+  for (const auto& [name, seconds] : io::read_photograph_numbers(file, "seconds"))
     require(!name.empty() && std::isfinite(seconds), "a time is not possible");
 }
 

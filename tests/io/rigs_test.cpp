@@ -6,7 +6,7 @@
 
 #include <cstring>
 
-#include "io/cameras/photograph_times.h"
+#include "io/cameras/photograph_numbers.h"
 #include "wrong_input.h"
 
 namespace axial::io {
@@ -169,16 +169,17 @@ TEST_F(RigsTest, RefusesFilesThatAreCutOff) {
 TEST_F(RigsTest, ReadsTimes) {
   const std::filesystem::path file = folder_ / "times.csv";
   put(file, "name,seconds\n# a comment\nleft/a,b.jpg, 1.5\n\nright/a.jpg,-2e1\n");
-  EXPECT_EQ(read_photograph_times(file),
-            (PhotographTimes{{"left/a,b.jpg", 1.5}, {"right/a.jpg", -20}}));
+  EXPECT_EQ(read_photograph_numbers(file, "seconds"),
+            (PhotographNumbers{{"left/a,b.jpg", 1.5}, {"right/a.jpg", -20}}));
   for (const auto& [text, expected] : std::map<std::string, std::string>{
-           {"a.jpg 1\n", "line 1: 'a.jpg 1' is not NAME,SECONDS"},
-           {"a.jpg,x\n", "seconds are 'x'"},
+           {"a.jpg 1\n", "line 1: 'a.jpg 1' is not name,seconds"},
+           {"a.jpg,x\n", "seconds: 'x' is not a valid number"},
            {",1\n", "the name is missing"},
            {"a.jpg,1\na.jpg,2\n", "line 2: the photograph 'a.jpg' occurs twice"},
            {"name,seconds\n", "contains no photograph"}}) {
     put(file, text);
-    EXPECT_THAT(error_naming(file, [&] { read_photograph_times(file); }), HasSubstr(expected));
+    EXPECT_THAT(error_naming(file, [&] { read_photograph_numbers(file, "seconds"); }),
+                HasSubstr(expected));
   }
 }
 

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "io/bytes/json.h"
 #include "io/cameras/housing.h"
+#include "io/cameras/photograph_numbers.h"
 #include "io/colmap/colmap.h"
 #include "io/images/image.h"
 #include "io/ply/ply.h"
@@ -87,7 +88,10 @@ TEST_F(SimulateUnderwater, PhotographsWithTheLightOfWater) {
   EXPECT_EQ(light.at("lamps").at(0).at("place").at(0), 0.2);
   EXPECT_EQ(light.at("absorption_per_m").size(), 16u);
   EXPECT_EQ(light.at("exposures").size(), 3u);
-  for (const double exposure : light.at("exposures")) EXPECT_NEAR(exposure, 1.25, 0.75);
+  const io::PhotographNumbers exposures =
+      io::read_photograph_numbers(folder_ / "a/water/exposures.csv", "exposure");
+  for (const auto& [name, exposure] : exposures) EXPECT_NEAR(exposure, 1.25, 0.75) << name;
+  EXPECT_NEAR(exposures.at("0002.jpg"), light.at("exposures").at(2), 1e-6);
   // A lamp beside the camera casts shadows, and most of the surface is lit.
   double least = 0, most = 0;
   const cv::Mat lit =

@@ -10,6 +10,7 @@ import struct
 MARKS = (b"Exif\0\0", b"eXIf")
 SEARCHED = 1 << 17  # bytes
 MAKER, MODEL, ORIENTATION, EXIF_TABLE, TAKEN, FOCAL_LENGTH, GPS_TABLE = 271, 272, 274, 0x8769, 0x9003, 0x920A, 0x8825
+EXPOSURE_TIME, F_NUMBER, SENSITIVITY = 0x829A, 0x829D, 0x8827
 POSITION = {2, 4, 6}  # tags of latitude, longitude and altitude in the GPS table
 TEXT, SHORT, RATIONAL = 2, 3, 5  # kinds of values
 BYTES = {1: 1, TEXT: 1, SHORT: 2, 4: 4, RATIONAL: 8, 6: 1, 7: 1, 8: 2, 9: 4, 10: 8, 11: 4, 12: 8}  # by kind
@@ -23,6 +24,7 @@ class Exif:
     focal: float | None = None  # focal length [mm]
     orientation: int = 1        # 1: to be shown as stored; 3, 6, 8: turned; others: mirrored, too
     date: str = ""              # the day on which it was taken, as 2024-05-31
+    exposure: float | None = None  # exposure time [s] by sensitivity (ISO) over the square of the f-number
     has_position: bool = False  # whether latitude, longitude and altitude are there; COLMAP 3.8 uses only all three
 
 
@@ -98,6 +100,15 @@ def has_position(first):
         return False
 
 
+def exposure_in(own):
+    """The exposure by the table `own`; None if time or sensitivity is not stated. A lens without contacts states no
+    f-number: the aperture is taken for 1."""
+    time, number, sensitivity = (own.value(tag) for tag in (EXPOSURE_TIME, F_NUMBER, SENSITIVITY))
+    if not all(isinstance(value, (int, float)) and value > 0 for value in (time, sensitivity)):
+        return None
+    return time * sensitivity / (number * number if isinstance(number, (int, float)) and number > 0 else 1)
+
+
 def exif_in(data):
     """The Exif in the bytes of a file; the defaults if there is none, or if it is damaged."""
     try:
@@ -110,6 +121,6 @@ def exif_in(data):
         return Exif(camera_of(first.value(MAKER), first.value(MODEL)),
                     focal if isinstance(focal, (int, float)) and focal > 0 else None,
                     orientation if orientation in range(1, 9) else 1, day_of(own.value(TAKEN) if own else None),
-                    has_position(first))
+                    exposure_in(own) if own else None, has_position(first))
     except (ValueError, struct.error):
         return Exif()

@@ -7,8 +7,8 @@ import itertools
 import os
 import pathlib
 
-from . import (boundary, cameras, cluster, colmap, control, dates, doubles, estimates, files, first_checks, first_look,
-               lenses, masks, matching, photographs, poses, positions, video)
+from . import (boundary, cameras, cluster, colmap, control, dates, doubles, estimates, exposures, files, first_checks,
+               first_look, lenses, masks, matching, photographs, poses, positions, video)
 from .failure import Failure
 from .option_files import find_option, has_option
 from .ownership import is_record
@@ -359,6 +359,10 @@ def check_photographs(given, lens_lines):
     if given.dated:
         given.lines.append(f"dates: {dates.in_words(given.dated)}")
         print(f"{given.images}: {given.lines[-1]}", flush=True)
+    given.exposures = exposures.of(given, images, used(given, images))
+    for line in exposures.lines_about(given.exposures):
+        print(f"{given.images}: {line}", flush=True)
+        given.lines.append(line)
     given.doubled = doubled(given, images)
     given.matcher = matching.chosen(given.matcher, len(used(given, images)))
     first_checks.check_options_of_programs(given, {"matches": OPTIONS["matches"]})

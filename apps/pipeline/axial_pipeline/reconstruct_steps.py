@@ -3,8 +3,8 @@
 
 import pathlib
 
-from . import (boundary, cameras, colmap, control, database, features, left_out, lenses, map_places, masks, matching,
-               poses, positions, start_lens, still_features, turns, video)
+from . import (boundary, cameras, colmap, control, database, exposures, features, left_out, lenses, map_places, masks,
+               matching, poses, positions, start_lens, still_features, turns, video)
 from .option_files import find_option, has_option, read_by, without_options
 from .programs import Programs, words_of
 from .reconstruct_options import keeps_depth_maps, wanted_steps
@@ -205,9 +205,12 @@ def color_steps(run, wanted):
     """The photographs without water, and a cloud that has their colours."""
     out = run.out
     if "colors" in wanted:
+        found, file = run.given.exposures, out / exposures.FILE
         command = run.programs.restore_colors(run.scene, first_mesh(run.given, out), out / RESTORED, *REFRACTIVE,
-                                              *run.words("colors"))
-        yield run.step("colors", command, Report(out / RESTORED / "colors.json"), anew=[out / RESTORED])
+                                              *(["--exposures", file] if found else []), *run.words("colors"))
+        yield run.step("colors", command, Report(out / RESTORED / "colors.json"), anew=[out / RESTORED],
+                       before=lambda: exposures.write(file, found) if found else None,
+                       settings=[f"{name} {exposure}" for name, exposure in found.items()])
     if "restored-cloud" in wanted:
         # The same command as that of the step "densify", so that it takes the depth maps of this step, or with
         # --match-restored replaces them.

@@ -9,7 +9,8 @@ import re
 from . import control, files, jobs
 from .steps import Records
 
-FOUND = ("lenses", "cameras", "lines", "videos", "date", "joint", "dated", "doubled")  # what the first checks add to the options
+FOUND = ("lenses", "cameras", "lines", "videos", "date", "joint", "dated", "doubled",
+         "exposures")  # what the first checks add to the options
 
 WARNINGS = re.compile(
     r"^\d\d:\d\d:\d\d \[\w+\] warning: (?P<ours>.*)$"  # libs/base/log.cpp

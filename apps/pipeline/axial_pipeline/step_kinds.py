@@ -55,7 +55,7 @@ KINDS = {
                  parts=("mesh-tile-*",)),
     "refine-mesh": Kind(["scene_dense_refined.*"], (8000, 4, 60, 1), "RefineMesh", result="mesh", can_be_left_out=True,
                         takes_masks=True, has_limits=True),
-    "colors": Kind(["restored"], (8000, 4, 60, 0.2), "RestoreColors", result="texture", takes_masks=True,
+    "colors": Kind(["restored", "exposures.csv"], (8000, 4, 60, 0.2), "RestoreColors", result="texture", takes_masks=True,
                    has_limits=True),
     "restored-cloud": Kind(["scene_restored.*"], (4000, 0, 60, 0.2), result="texture", has_limits=True),
     "restored-mesh": Kind(["scene_restored_mesh.*"], (8000, 4, 60, 0.5), result="texture", has_limits=True),
