@@ -23,7 +23,7 @@ Observations by_curve(Observations observations, const Transfer& from, const Tra
 class Search {
  public:
   Search(const Exposures& exposures, const Observations& observations, const Transfer& from,
-         std::optional<Light> light)
+         Light light)
       : exposures_(exposures), observations_(observations), from_(from), light_(light) {}
 
   double spread(double gamma) const {
@@ -54,8 +54,27 @@ class Search {
   const Exposures& exposures_;
   const Observations& observations_;
   const Transfer& from_;
-  std::optional<Light> light_;
+  Light light_;
 };
+
+CameraCurve find_curve_in(Light light, const Exposures& exposures, const Observations& observations,
+                          const Transfer& from) {
+  constexpr double kNearlyBest = 1.1, kClearlyWorse = 1.15, kOther = 1.2, kGammaOfSrgb = 2.2;
+  const Search search(exposures, observations, from, light);
+  CameraCurve curve{from};
+  curve.spread = curve.spread_first = spread_with(exposures, observations, from, light);
+  const auto [gamma, spread] = search.best();
+  const bool keeps = curve.spread_first <= kNearlyBest * spread;
+  const double middle = keeps ? from.gamma().value_or(kGammaOfSrgb) : gamma;
+  const double least = keeps ? curve.spread_first : spread;
+  curve.is_told = std::min(search.spread(middle / kOther), search.spread(middle * kOther)) >
+                  kClearlyWorse * least;
+  if (curve.is_told && !keeps) {
+    curve.transfer = Transfer::of_gamma(gamma);
+    curve.spread = spread;
+  }
+  return curve;
+}
 
 }  // namespace
 
@@ -75,21 +94,12 @@ double spread_with(const Exposures& exposures, const Observations& observations,
 
 CameraCurve find_curve(const Exposures& exposures, const Observations& observations,
                        const Transfer& from, std::optional<Light> light) {
-  constexpr double kNearlyBest = 1.1, kClearlyWorse = 1.15, kOther = 1.2, kGammaOfSrgb = 2.2;
-  const Search search(exposures, observations, from, light);
-  CameraCurve curve{from};
-  curve.spread = curve.spread_first = spread_with(exposures, observations, from, light);
-  const auto [gamma, spread] = search.best();
-  const bool keeps = curve.spread_first <= kNearlyBest * spread;
-  const double middle = keeps ? from.gamma().value_or(kGammaOfSrgb) : gamma;
-  const double least = keeps ? curve.spread_first : spread;
-  curve.is_told = std::min(search.spread(middle / kOther), search.spread(middle * kOther)) >
-                  kClearlyWorse * least;
-  if (curve.is_told && !keeps) {
-    curve.transfer = Transfer::of_gamma(gamma);
-    curve.spread = spread;
-  }
-  return curve;
+  constexpr double kGood = 0.2;
+  if (light) return find_curve_in(*light, exposures, observations, from);
+  const CameraCurve sun = find_curve_in(Light::sun, exposures, observations, from);
+  if (sun.spread < kGood) return sun;
+  const CameraCurve lamp = find_curve_in(Light::lamp, exposures, observations, from);
+  return lamp.spread < sun.spread ? lamp : sun;
 }
 
 }  // namespace axial::color

@@ -25,8 +25,9 @@ struct CameraCurve {
 
 // The curve value = light^(1/G), with G from 1 to 3 to two digits after the point, that has the
 // least spread_with() the exposures. `from`, the curve by which the observations have their light,
-// stays if its spread is at most a tenth larger. The light of an observation, which is a mean, is
-// converted as if it were the light of one pixel.
+// stays if its spread is at most a tenth larger. Without a light, daylight is tried first, and
+// lamps only if the spread is above 0.2, because their model takes ten times as long. The light of
+// an observation, which is a mean, is converted as if it were the light of one pixel.
 CameraCurve find_curve(const Exposures& exposures, const Observations& observations,
                        const Transfer& from, std::optional<Light> light);
 
