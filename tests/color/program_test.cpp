@@ -285,16 +285,23 @@ TEST_F(RestoreColors, KeepsTheCurveOfSrgbWhereExposuresAgree) {
                    "--exposures water/exposures.csv",
                    expected);
   };
-  std::string inverted;
-  for (const auto& [name, exposure] : io::read_photograph_numbers(file, "exposure"))
-    inverted += fmt::format("{},{}\n", name, 1 / exposure);
-  write_atomically(folder_ / "inverted.csv", inverted);
-  EXPECT_THAT(restore("--light sun --exposures inverted.csv"),
-              HasSubstr("agrees better without these exposures: they are not used"));
-  EXPECT_EQ(findings().at("exposure"), "one");
   refuses("0000.jpg,1\n", "has no exposure of the photograph 0001.jpg");
   refuses("0000.jpg,1\nwater/0000.jpg,2\n", "two lines are for the photograph 0000.jpg");
   refuses("0000.jpg,0\n", "the exposure of 0000.jpg is 0, but must be above 0");
+}
+
+// The light of a flash does not depend on the exposure time.
+TEST_F(RestoreColors, UsesNoExposuresThatTheLightContradicts) {
+  photograph(kPlainWater);
+  std::string lines;
+  for (int i = 0; i < 8; ++i) lines += fmt::format("{:04}.jpg,{}\n", i, i % 2 == 0 ? 1 : 2);
+  write_atomically(folder_ / "flash.csv", lines);
+  EXPECT_THAT(restore("--light sun --exposures flash.csv"),
+              HasSubstr("agrees better without these exposures: they are not used"));
+  EXPECT_EQ(findings().at("exposure"), "one");
+  EXPECT_EQ(findings().at("curve_from"), "assumption");
+  const nlohmann::json red = findings().at("channels").at("red");
+  EXPECT_NEAR(red.at("a_per_m").at("value"), 0.9, 0.08 * 0.9 + 0.02);
 }
 
 // With heights, the surface becomes as bright as if it was level; a known type is used.
