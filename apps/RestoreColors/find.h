@@ -16,7 +16,7 @@ Eigen::Vector3d up_of(const Settings& settings, const survey::Survey& survey);
 
 // Finds the water, the light, the exposures and the curve of the camera. Findings::gain is that of
 // a grey seabed. Error for photographs that have too few points in common or determine no channel,
-// and for a file of exposures that does not belong to the photographs.
+// and for a file of exposures that lacks a photograph.
 Findings find(const Settings& settings, const survey::Survey& survey,
               const color::SeenSurface& surface, const Context& context);
 

@@ -13,8 +13,9 @@
 
 namespace axial::apps {
 
-// Whether the photographs have one exposure and white balance, exposures that a file gives and one
-// white balance, or each its own, which are estimated.
+// The exposures and white balances of the photographs. `one`: the same of both for all. `given`:
+// the exposures are those of a file, and the white balance is the same for all. `each`: both are
+// estimated for each photograph.
 enum class ExposureKind { one, given, each };
 
 // A part of a photograph that is grey in white light.

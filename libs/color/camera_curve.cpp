@@ -8,6 +8,12 @@
 namespace axial::color {
 namespace {
 
+// A part of the points, which is enough for a spread. A part is its own part.
+Observations part_of(const Observations& observations) {
+  constexpr std::size_t kPoints = 500;
+  return every(std::max<std::size_t>(1, observations.points() / kPoints), 0, observations);
+}
+
 // The observations with the light that their values have by another curve.
 Observations by_curve(Observations observations, const Transfer& from, const Transfer& to) {
   for (Observation& seen : observations.all)
@@ -80,9 +86,7 @@ CameraCurve find_curve_in(Light light, const Exposures& exposures, const Observa
 
 double spread_with(const Exposures& exposures, const Observations& observations,
                    const Transfer& transfer, std::optional<Light> light) {
-  constexpr std::size_t kPoints = 500;
-  const std::size_t step = std::max<std::size_t>(1, observations.points() / kPoints);
-  const Observations even = divided_by(exposures, every(step, 0, observations));
+  const Observations even = divided_by(exposures, part_of(observations));
   double least = std::numeric_limits<double>::infinity();
   for (const Light tried : {Light::sun, Light::lamp}) {
     if (light && *light != tried) continue;
@@ -95,10 +99,11 @@ double spread_with(const Exposures& exposures, const Observations& observations,
 CameraCurve find_curve(const Exposures& exposures, const Observations& observations,
                        const Transfer& from, std::optional<Light> light) {
   constexpr double kGood = 0.2;
-  if (light) return find_curve_in(*light, exposures, observations, from);
-  const CameraCurve sun = find_curve_in(Light::sun, exposures, observations, from);
+  const Observations part = part_of(observations);
+  if (light) return find_curve_in(*light, exposures, part, from);
+  const CameraCurve sun = find_curve_in(Light::sun, exposures, part, from);
   if (sun.spread < kGood) return sun;
-  const CameraCurve lamp = find_curve_in(Light::lamp, exposures, observations, from);
+  const CameraCurve lamp = find_curve_in(Light::lamp, exposures, part, from);
   return lamp.spread < sun.spread ? lamp : sun;
 }
 

@@ -9,7 +9,7 @@
 
 namespace axial::color {
 
-// spread_of() the model that is fitted to a part of the points, about 500 of them, after their
+// spread_of() the model that is fitted to a part of the points, 500 to 1000 of them, after their
 // light was divided by the exposures. Without a light, of the model with the smaller spread.
 double spread_with(const Exposures& exposures, const Observations& observations,
                    const Transfer& transfer, std::optional<Light> light);
@@ -18,8 +18,9 @@ struct CameraCurve {
   Transfer transfer;
   double spread = 0;        // spread_with() this curve
   double spread_first = 0;  // spread_with() the curve with which the search began
-  // Whether the photographs tell the curve: curves whose power is a fifth lower or higher give a
-  // spread that is larger by 15 %. If not, `transfer` is the curve with which the search began.
+  // Whether the photographs tell the curve: curves whose power is lower or higher by a factor of
+  // 1.2 give a spread that is larger by 15 %. If not, `transfer` is the curve with which the search
+  // began.
   bool is_told = false;
 };
 

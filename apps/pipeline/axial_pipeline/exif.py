@@ -102,7 +102,7 @@ def has_position(first):
 
 def exposure_in(own):
     """The exposure by the table `own`; None if time or sensitivity is not stated. A lens without contacts states no
-    f-number: the aperture is taken for 1."""
+    f-number: it is taken for 1."""
     time, number, sensitivity = (own.value(tag) for tag in (EXPOSURE_TIME, F_NUMBER, SENSITIVITY))
     if not all(isinstance(value, (int, float)) and value > 0 for value in (time, sensitivity)):
         return None
